@@ -1,0 +1,52 @@
+"""Statistics and acceptance reports for POS (GNSS/INS) orientations of aerial photographs.
+
+The names below are imported when they are first used, so that ``posstats --help`` stays fast.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from posstats.analysis import Settings, analyse
+    from posstats.block import Block
+    from posstats.block_io import read_block
+    from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
+    from posstats.regression import fit_drift
+    from posstats.relative_orientation import orient
+    from posstats.stereo import stereo_models
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Block": "block",
+    "BlockFormatError": "errors",
+    "ConvergenceError": "errors",
+    "GeometryError": "errors",
+    "PosstatsError": "errors",
+    "Settings": "analysis",
+    "analyse": "analysis",
+    "fit_drift": "regression",
+    "orient": "relative_orientation",
+    "read_block": "block_io",
+    "stereo_models": "stereo",
+}
+
+__all__ = [
+    "Block",
+    "BlockFormatError",
+    "ConvergenceError",
+    "GeometryError",
+    "PosstatsError",
+    "Settings",
+    "analyse",
+    "fit_drift",
+    "orient",
+    "read_block",
+    "stereo_models",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"posstats.{_HOME[name]}"), name)

@@ -1,0 +1,164 @@
+"""The y-parallax of a pair of image rays, and its exact derivatives; arrays only, compiled.
+
+With a = R1 x1, b = R2 x2 in a frame whose X axis lies along the horizontal projection of the
+base (BX, BY, BZ), and image vectors x = (x, y, -c) in px,
+
+    N1 = (BX bz - BZ bx) / (ax bz - bx az),   N2 = (BX az - BZ ax) / (ax bz - bx az),
+    q  = (N1 ay - N2 by - BY) / N2                                         [px at image scale],
+
+which, with u = BX bz - BZ bx, v = BX az - BZ ax, w = ax bz - bx az, is
+
+    q = (u ay - w BY) / v - by.
+
+q is zero when the two rays and the base are coplanar. The derivatives are those of this form,
+term by term; the linearised equation (1) of the first source paper holds to a few per cent only.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.compiled import inner_kernel, kernel
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+
+@inner_kernel
+def _parallax(a: _Floats, b: _Floats, base: _Floats) -> float:
+    u = base[0] * b[2] - base[2] * b[0]
+    v = base[0] * a[2] - base[2] * a[0]
+    w = a[0] * b[2] - b[0] * a[2]
+    return (u * a[1] - w * base[1]) / v - b[1]
+
+
+@inner_kernel
+def _parallax_gradients(
+    a: _Floats, b: _Floats, base: _Floats, da: _Floats, db: _Floats, dbase: _Floats
+) -> float:
+    """q, and its gradients with respect to a, b and the base, written to da, db, dbase (3,)."""
+    u = base[0] * b[2] - base[2] * b[0]
+    v = base[0] * a[2] - base[2] * a[0]
+    w = a[0] * b[2] - b[0] * a[2]
+    ratio = (u * a[1] - w * base[1]) / v
+    dq_du, dq_dv, dq_dw = a[1] / v, -ratio / v, -base[1] / v
+    da[0] = -dq_dv * base[2] + dq_dw * b[2]
+    da[1] = u / v
+    da[2] = dq_dv * base[0] - dq_dw * b[0]
+    db[0] = -dq_du * base[2] - dq_dw * a[2]
+    db[1] = -1.0
+    db[2] = dq_du * base[0] + dq_dw * a[0]
+    dbase[0] = dq_du * b[2] + dq_dv * a[2]
+    dbase[1] = -w / v
+    dbase[2] = -dq_du * b[0] - dq_dv * a[0]
+    return ratio - b[1]
+
+
+@inner_kernel
+def _rotated(matrix: _Floats, vector: _Floats, out: _Floats) -> None:
+    for i in range(3):
+        out[i] = matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
+
+
+def base_frames(base_m: _Floats) -> _Floats:
+    """Rotations (..., 3, 3) base_from_ground about Z that turn the base's X-Y direction onto +X.
+
+    Parameters
+    ----------
+    base_m
+        (..., 3) base vectors, right minus left projection centre, ground frame, metres.
+    """
+    horizontal = np.hypot(base_m[..., 0], base_m[..., 1])
+    safe = np.where(horizontal > 0.0, horizontal, 1.0)
+    cosine = np.where(horizontal > 0.0, base_m[..., 0] / safe, 1.0)
+    sine = np.where(horizontal > 0.0, base_m[..., 1] / safe, 0.0)
+    frames = np.zeros((*base_m.shape[:-1], 3, 3))
+    frames[..., 0, 0] = frames[..., 1, 1] = cosine
+    frames[..., 0, 1], frames[..., 1, 0] = sine, -sine
+    frames[..., 2, 2] = 1.0
+    return frames
+
+
+@kernel
+def y_parallax(
+    left_vectors: _Floats,
+    right_vectors: _Floats,
+    offsets: _Ints,
+    base_from_left: _Floats,
+    base_from_right: _Floats,
+    base: _Floats,
+) -> _Floats:
+    """y-parallax of every point pair, px at image scale.
+
+    Parameters
+    ----------
+    left_vectors, right_vectors
+        (N, 3) image vectors (x, y, -c) in px, pair after pair.
+    offsets
+        (P + 1,) first point of each pair, and N.
+    base_from_left, base_from_right
+        (P, 3, 3) rotations from the image frames into the pair's base frame.
+    base
+        (P, 3) base in that frame (any unit of length).
+    """
+    q = np.empty(left_vectors.shape[0])
+    a, b = np.empty(3), np.empty(3)
+    for pair in range(offsets.shape[0] - 1):
+        for k in range(offsets[pair], offsets[pair + 1]):
+            _rotated(base_from_left[pair], left_vectors[k], a)
+            _rotated(base_from_right[pair], right_vectors[k], b)
+            q[k] = _parallax(a, b, base[pair])
+    return q
+
+
+@kernel
+def y_parallax_derivatives(
+    left_vectors: _Floats,
+    right_vectors: _Floats,
+    offsets: _Ints,
+    base_from_left: _Floats,
+    base_from_right: _Floats,
+    left_derivatives: _Floats,
+    right_derivatives: _Floats,
+    base: _Floats,
+) -> tuple[_Floats, _Floats, _Floats, _Floats, _Floats]:
+    """y-parallax and its derivatives for every point pair.
+
+    Parameters are those of `y_parallax`, with
+
+    left_derivatives, right_derivatives
+        (P, 3, 3, 3) derivatives of base_from_left and base_from_right with respect to the
+        three angles of the image.
+
+    Returns
+    -------
+    q
+        (N,) px.
+    by_left_angles, by_right_angles
+        (N, 3) px/rad.
+    by_base
+        (N, 3) px per unit of the base, in the base frame held fixed.
+    by_image
+        (N, 4) with respect to x, y of the left and x, y of the right image point.
+    """
+    n = left_vectors.shape[0]
+    q = np.empty(n)
+    by_left, by_right, by_base = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    by_image = np.empty((n, 4))
+    a, b, turned = np.empty(3), np.empty(3), np.empty(3)
+    da, db = np.empty(3), np.empty(3)
+    for pair in range(offsets.shape[0] - 1):
+        for k in range(offsets[pair], offsets[pair + 1]):
+            _rotated(base_from_left[pair], left_vectors[k], a)
+            _rotated(base_from_right[pair], right_vectors[k], b)
+            q[k] = _parallax_gradients(a, b, base[pair], da, db, by_base[k])
+            for angle in range(3):
+                _rotated(left_derivatives[pair, angle], left_vectors[k], turned)
+                by_left[k, angle] = da[0] * turned[0] + da[1] * turned[1] + da[2] * turned[2]
+                _rotated(right_derivatives[pair, angle], right_vectors[k], turned)
+                by_right[k, angle] = db[0] * turned[0] + db[1] * turned[1] + db[2] * turned[2]
+            for axis in range(2):
+                by_image[k, axis] = by_image[k, axis + 2] = 0.0
+                for i in range(3):
+                    by_image[k, axis] += da[i] * base_from_left[pair, i, axis]
+                    by_image[k, axis + 2] += db[i] * base_from_right[pair, i, axis]
+    return q, by_left, by_right, by_base, by_image

@@ -1,0 +1,1 @@
+"""Everything a person sees: tables, figures, pages and the command line."""
