@@ -28,7 +28,7 @@ def _parallax(a: _Floats, b: _Floats, base: _Floats) -> float:
     u = base[0] * b[2] - base[2] * b[0]
     v = base[0] * a[2] - base[2] * a[0]
     w = a[0] * b[2] - b[0] * a[2]
-    return (u * a[1] - w * base[1]) / v - b[1]
+    return float((u * a[1] - w * base[1]) / v - b[1])
 
 
 @inner_kernel
@@ -50,7 +50,7 @@ def _parallax_gradients(
     dbase[0] = dq_du * b[2] + dq_dv * a[2]
     dbase[1] = -w / v
     dbase[2] = -dq_du * b[0] - dq_dv * a[0]
-    return ratio - b[1]
+    return float(ratio - b[1])
 
 
 @inner_kernel

@@ -120,7 +120,8 @@ def rotation_from_vector(vector_rad: ArrayLike) -> _Floats:
     # sinc keeps full precision at angle 0: np.sinc(x) = sin(pi x) / (pi x)
     first = np.sinc(angle / np.pi)
     second = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
-    return np.eye(3) + first * generator + second * (generator @ generator)
+    rotation: _Floats = np.eye(3) + first * generator + second * (generator @ generator)
+    return rotation
 
 
 def vector_from_rotation(rotation: ArrayLike) -> _Floats:
@@ -137,10 +138,11 @@ def vector_from_rotation(rotation: ArrayLike) -> _Floats:
     sine = np.linalg.norm(axis, axis=-1)
     cosine = 0.5 * (np.trace(r, axis1=-2, axis2=-1) - 1.0)
     angle = np.arctan2(sine, cosine)
-    scale = 1.0 / np.sinc(angle / np.pi)
-    return axis * scale[..., None]
+    vector: _Floats = axis / np.sinc(angle / np.pi)[..., None]
+    return vector
 
 
 def wrapped(angle_rad: ArrayLike) -> _Floats:
     """Angles reduced to [-pi, pi)."""
-    return (np.asarray(angle_rad, dtype=float) + np.pi) % (2.0 * np.pi) - np.pi
+    reduced: _Floats = (np.asarray(angle_rad, dtype=float) + np.pi) % (2.0 * np.pi) - np.pi
+    return reduced
