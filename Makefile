@@ -1,0 +1,52 @@
+# Everything that a checkout needs, from a bare Debian machine with Python 3.11, git and make.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+OUT    := out/paper
+
+.DEFAULT_GOAL := help
+
+.PHONY: help
+help:  ## Show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 18
+
+.PHONY: paper
+paper: $(READY)  ## Simulate a small block of the paper's area 1, analyse it, write its report
+	@.ci/debian-packages --pango
+	$(BIN)/posstats simulate --scenario posstats/scenarios/area1-small.toml --out $(OUT)/block
+	$(BIN)/posstats analyse $(OUT)/block --out $(OUT)
+
+.PHONY: test
+test: $(READY) lint types  ## Run all checks and tests
+	@.ci/debian-packages --pango
+	$(BIN)/pytest -q -n 2
+
+.PHONY: lint
+lint: $(READY)  ## Check style
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+.PHONY: types
+types: $(READY)  ## Check types
+	$(BIN)/mypy
+
+.PHONY: benchmark
+benchmark: $(READY)  ## Time the relative orientation beside PoseLib, and a whole analysis
+	$(BIN)/python benchmarks/relative_orientation.py
+	$(BIN)/python benchmarks/analysis.py
+
+.PHONY: coverage
+coverage: $(READY)  ## Simulate the coverage of the regression's intervals (minutes)
+	$(BIN)/python benchmarks/interval_coverage.py
+
+.PHONY: clean
+clean:  ## Remove the environment and all output
+	rm -rf $(VENV) out build dist *.egg-info
+
+$(READY): pyproject.toml
+	@.ci/debian-packages --venv $(PYTHON)
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
