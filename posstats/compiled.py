@@ -1,4 +1,8 @@
-"""The one way in which kernels are compiled: numba, without the GIL, cached where possible."""
+"""The one way in which kernels are compiled: numba, without the GIL, cached where possible.
+
+Division by zero gives infinity or NaN, as in NumPy: one degenerate pair of images must not
+raise an exception for a whole block.
+"""
 
 from collections.abc import Callable
 from functools import wraps
@@ -17,9 +21,9 @@ def kernel(function: F) -> F:
     fall back to compiling in memory. Kernels that call each other share a file, because numba
     checks only the caller's file for changes.
     """
-    uncached = numba.njit(nogil=True)(function)
+    uncached = numba.njit(nogil=True, error_model="numpy")(function)
     try:
-        cached = numba.njit(nogil=True, cache=True)(function)
+        cached = numba.njit(nogil=True, cache=True, error_model="numpy")(function)
     except RuntimeError:
         return cast(F, uncached)
 
@@ -35,4 +39,4 @@ def kernel(function: F) -> F:
 
 def inner_kernel(function: F) -> F:
     """Compile a function for use inside the kernels of the same file."""
-    return cast(F, numba.njit(nogil=True)(function))
+    return cast(F, numba.njit(nogil=True, error_model="numpy")(function))

@@ -14,6 +14,8 @@ q is zero when the two rays and the base are coplanar. The derivatives are those
 term by term; the linearised equation (1) of the first source paper holds to a few per cent only.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,42 +23,46 @@ from posstats.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
+_Vector = Any  # three numbers: an array row or a tuple kept in registers
 
 
 @inner_kernel
-def _parallax(a: _Floats, b: _Floats, base: _Floats) -> float:
+def _rotated(matrix: _Floats, vector: _Floats) -> _Vector:
+    return (
+        matrix[0, 0] * vector[0] + matrix[0, 1] * vector[1] + matrix[0, 2] * vector[2],
+        matrix[1, 0] * vector[0] + matrix[1, 1] * vector[1] + matrix[1, 2] * vector[2],
+        matrix[2, 0] * vector[0] + matrix[2, 1] * vector[1] + matrix[2, 2] * vector[2],
+    )
+
+
+@inner_kernel
+def _dot(a: _Vector, b: _Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner_kernel
+def _parallax(a: _Vector, b: _Vector, base: _Floats) -> float:
     u = base[0] * b[2] - base[2] * b[0]
     v = base[0] * a[2] - base[2] * a[0]
     w = a[0] * b[2] - b[0] * a[2]
-    return float((u * a[1] - w * base[1]) / v - b[1])
+    return (u * a[1] - w * base[1]) / v - b[1]
 
 
 @inner_kernel
 def _parallax_gradients(
-    a: _Floats, b: _Floats, base: _Floats, da: _Floats, db: _Floats, dbase: _Floats
-) -> float:
-    """q, and its gradients with respect to a, b and the base, written to da, db, dbase (3,)."""
+    a: _Vector, b: _Vector, base: _Floats
+) -> tuple[float, _Vector, _Vector, _Vector]:
+    """q, and its gradients with respect to a, b and the base."""
     u = base[0] * b[2] - base[2] * b[0]
     v = base[0] * a[2] - base[2] * a[0]
     w = a[0] * b[2] - b[0] * a[2]
-    ratio = (u * a[1] - w * base[1]) / v
-    dq_du, dq_dv, dq_dw = a[1] / v, -ratio / v, -base[1] / v
-    da[0] = -dq_dv * base[2] + dq_dw * b[2]
-    da[1] = u / v
-    da[2] = dq_dv * base[0] - dq_dw * b[0]
-    db[0] = -dq_du * base[2] - dq_dw * a[2]
-    db[1] = -1.0
-    db[2] = dq_du * base[0] + dq_dw * a[0]
-    dbase[0] = dq_du * b[2] + dq_dv * a[2]
-    dbase[1] = -w / v
-    dbase[2] = -dq_du * b[0] - dq_dv * a[0]
-    return float(ratio - b[1])
-
-
-@inner_kernel
-def _rotated(matrix: _Floats, vector: _Floats, out: _Floats) -> None:
-    for i in range(3):
-        out[i] = matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
+    by_v = 1.0 / v
+    ratio = (u * a[1] - w * base[1]) * by_v
+    dq_du, dq_dv, dq_dw = a[1] * by_v, -ratio * by_v, -base[1] * by_v
+    da = (-dq_dv * base[2] + dq_dw * b[2], u * by_v, dq_dv * base[0] - dq_dw * b[0])
+    db = (-dq_du * base[2] - dq_dw * a[2], -1.0, dq_du * base[0] + dq_dw * a[0])
+    dbase = (dq_du * b[2] + dq_dv * a[2], -w * by_v, -dq_du * b[0] - dq_dv * a[0])
+    return ratio - b[1], da, db, dbase
 
 
 def base_frames(base_m: _Floats) -> _Floats:
@@ -101,11 +107,10 @@ def y_parallax(
         (P, 3) base in that frame (any unit of length).
     """
     q = np.empty(left_vectors.shape[0])
-    a, b = np.empty(3), np.empty(3)
     for pair in range(offsets.shape[0] - 1):
         for k in range(offsets[pair], offsets[pair + 1]):
-            _rotated(base_from_left[pair], left_vectors[k], a)
-            _rotated(base_from_right[pair], right_vectors[k], b)
+            a = _rotated(base_from_left[pair], left_vectors[k])
+            b = _rotated(base_from_right[pair], right_vectors[k])
             q[k] = _parallax(a, b, base[pair])
     return q
 
@@ -144,21 +149,18 @@ def y_parallax_derivatives(
     q = np.empty(n)
     by_left, by_right, by_base = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     by_image = np.empty((n, 4))
-    a, b, turned = np.empty(3), np.empty(3), np.empty(3)
-    da, db = np.empty(3), np.empty(3)
     for pair in range(offsets.shape[0] - 1):
+        left, right = base_from_left[pair], base_from_right[pair]
         for k in range(offsets[pair], offsets[pair + 1]):
-            _rotated(base_from_left[pair], left_vectors[k], a)
-            _rotated(base_from_right[pair], right_vectors[k], b)
-            q[k] = _parallax_gradients(a, b, base[pair], da, db, by_base[k])
+            a, b = _rotated(left, left_vectors[k]), _rotated(right, right_vectors[k])
+            q[k], da, db, dbase = _parallax_gradients(a, b, base[pair])
             for angle in range(3):
-                _rotated(left_derivatives[pair, angle], left_vectors[k], turned)
-                by_left[k, angle] = da[0] * turned[0] + da[1] * turned[1] + da[2] * turned[2]
-                _rotated(right_derivatives[pair, angle], right_vectors[k], turned)
-                by_right[k, angle] = db[0] * turned[0] + db[1] * turned[1] + db[2] * turned[2]
+                by_base[k, angle] = dbase[angle]
+                turned_left = _rotated(left_derivatives[pair, angle], left_vectors[k])
+                turned_right = _rotated(right_derivatives[pair, angle], right_vectors[k])
+                by_left[k, angle] = _dot(da, turned_left)
+                by_right[k, angle] = _dot(db, turned_right)
             for axis in range(2):
-                by_image[k, axis] = by_image[k, axis + 2] = 0.0
-                for i in range(3):
-                    by_image[k, axis] += da[i] * base_from_left[pair, i, axis]
-                    by_image[k, axis + 2] += db[i] * base_from_right[pair, i, axis]
+                by_image[k, axis] = _dot(da, left[:, axis])
+                by_image[k, axis + 2] = _dot(db, right[:, axis])
     return q, by_left, by_right, by_base, by_image
