@@ -1,0 +1,201 @@
+"""Check points: intersected from given orientations, compared with their surveyed positions."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.block import Block, GroundPoints, Orientations
+from posstats.intersection import IntersectedPoints, intersect
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+_Ids = NDArray[np.object_]
+
+
+@dataclass(frozen=True, eq=False)
+class CheckPointResiduals:
+    """The g check points of a block, intersected from one set of orientations.
+
+    Positions and differences are in the axes of the block's crs; NaN where a point cannot be
+    intersected, for the reason in `status`.
+
+    Attributes
+    ----------
+    orientation
+        Name of the orientations, as in the results ("pos", "selected", ...).
+    point
+        (g,) ids, in the order of the block's ground points.
+    given_m
+        (g, 3) surveyed positions.
+    difference_m
+        (g, 3) computed minus given.
+    sigma_m
+        (g, 3) standard deviations of the differences: image noise, stated accuracy of the
+        orientations (independent between images) and of the survey, where that is stated.
+    n_rays
+        (g,) rays used.
+    rms_px
+        (g,) root mean square of the image residuals.
+    status
+        (g,) "ok" or why there is no position, as in `IntersectedPoints`.
+    """
+
+    orientation: str
+    point: _Ids
+    given_m: _Floats
+    difference_m: _Floats
+    sigma_m: _Floats
+    n_rays: _Ints
+    rms_px: _Floats
+    status: _Ids
+
+    def __len__(self) -> int:
+        return len(self.point)
+
+    @property
+    def is_ok(self) -> NDArray[np.bool_]:
+        """(g,) true where there is a difference."""
+        return np.asarray(self.status == "ok", dtype=bool)
+
+
+@dataclass(frozen=True)
+class CheckPointAccuracy:
+    """Statistics of the differences at n check points, metres; None where undefined.
+
+    Horizontal is hypot(dX, dY) of a point, vertical |dZ|. The root mean squares have the
+    divisor n, or n - 1 where the mean difference was removed: that estimate spends one point
+    on the translation and uses the check points themselves, so it is no proof of accuracy.
+
+    Attributes
+    ----------
+    orientation
+        Name of the orientations.
+    translation_removed
+        Whether the mean difference was removed before the other figures were formed.
+    n
+        Check points that were intersected.
+    shift_m
+        Mean difference dX, dY, dZ (in either case), crs axes.
+    """
+
+    orientation: str
+    translation_removed: bool
+    n: int
+    max_horizontal_m: float | None
+    max_vertical_m: float | None
+    min_horizontal_m: float | None
+    min_vertical_m: float | None
+    rmse_horizontal_m: float | None
+    rmse_vertical_m: float | None
+    shift_m: tuple[float, float, float] | None
+
+
+def check_point_residuals(
+    block: Block, orientations: Orientations, name: str
+) -> CheckPointResiduals:
+    """Intersect the check points of a block and subtract the surveyed positions.
+
+    Parameters
+    ----------
+    block
+        Its frame turns computed and given positions into crs axes.
+    orientations
+        Orientations of the block's images, computing frame.
+    name
+        Name of these orientations in the results.
+    """
+    given = _check_points(block.ground_points)
+    number = {point: k for k, point in enumerate(block.tie_points.point_id)}
+    # -1 is no point's number: a check point that no image shows has no rays
+    points = np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
+    computed = intersect(
+        block.tie_points,
+        orientations,
+        block.cameras,
+        points,
+        sigma_image_px=block.accuracy.image_px,
+    )
+    given_m = block.frame.to_crs(given.position_m)
+    return CheckPointResiduals(
+        orientation=name,
+        point=given.point,
+        given_m=given_m,
+        difference_m=_to_crs(block, computed) - given_m,
+        sigma_m=np.sqrt(_intersection_variance(block, computed, given_m) + _survey_variance(given)),
+        n_rays=computed.n_rays,
+        rms_px=computed.rms_px,
+        status=computed.status,
+    )
+
+
+def check_point_accuracy(
+    residuals: CheckPointResiduals, translation_removed: bool
+) -> CheckPointAccuracy:
+    """Maximum, minimum and RMSE of the differences at check points, horizontal and vertical."""
+    difference = residuals.difference_m[residuals.is_ok]
+    n = len(difference)
+    shift = difference.mean(axis=0) if n else None
+    divisor = n
+    if translation_removed and shift is not None:
+        difference = difference - shift
+        divisor = n - 1
+    horizontal = np.hypot(difference[:, 0], difference[:, 1])
+    max_h, min_h, rmse_h = _extremes_and_rmse(horizontal, divisor)
+    max_v, min_v, rmse_v = _extremes_and_rmse(np.abs(difference[:, 2]), divisor)
+    return CheckPointAccuracy(
+        orientation=residuals.orientation,
+        translation_removed=translation_removed,
+        n=n,
+        max_horizontal_m=max_h,
+        max_vertical_m=max_v,
+        min_horizontal_m=min_h,
+        min_vertical_m=min_v,
+        rmse_horizontal_m=rmse_h,
+        rmse_vertical_m=rmse_v,
+        shift_m=None if shift is None else (float(shift[0]), float(shift[1]), float(shift[2])),
+    )
+
+
+def _extremes_and_rmse(
+    values: _Floats, divisor: int
+) -> tuple[float | None, float | None, float | None]:
+    if divisor < 1:
+        return None, None, None
+    rmse = float(np.sqrt(np.sum(values**2) / divisor))
+    return float(values.max()), float(values.min()), rmse
+
+
+def _check_points(ground_points: GroundPoints | None) -> GroundPoints:
+    if ground_points is None:
+        none = np.empty(0)
+        return GroundPoints(none.astype(object), np.empty((0, 3)), none.astype(bool), none, none)
+    keep = ground_points.is_check
+    return GroundPoints(
+        point=ground_points.point[keep],
+        position_m=ground_points.position_m[keep],
+        is_check=ground_points.is_check[keep],
+        sigma_xy_m=ground_points.sigma_xy_m[keep],
+        sigma_z_m=ground_points.sigma_z_m[keep],
+    )
+
+
+def _to_crs(block: Block, computed: IntersectedPoints) -> _Floats:
+    """(g, 3) computed positions in the crs; NaN where there is none."""
+    position = np.full((len(computed), 3), np.nan)
+    position[computed.is_ok] = block.frame.to_crs(computed.position_m[computed.is_ok])
+    return position
+
+
+def _intersection_variance(block: Block, computed: IntersectedPoints, given_m: _Floats) -> _Floats:
+    """(g, 3) variances of the computed positions along the crs axes, m2."""
+    axes = block.frame.computing_from_crs_axes(given_m)
+    covariance = computed.covariance_with_orientation_m2
+    variance: _Floats = np.einsum("gji,gjk,gki->gi", axes, covariance, axes)
+    return variance
+
+
+def _survey_variance(given: GroundPoints) -> _Floats:
+    """(g, 3) variances of the surveyed positions, m2; 0 where not stated."""
+    sigma = np.column_stack([given.sigma_xy_m, given.sigma_xy_m, given.sigma_z_m])
+    return np.nan_to_num(sigma) ** 2

@@ -1,0 +1,385 @@
+"""The projection of ground points into images, its exact derivatives, and its inverse by rays.
+
+With u = R^T (X - S), R the rotation ground_from_image, S the projection centre and c the
+principal distance in px,
+
+    x = -c ux / uz,   y = -c uy / uz                                                    [px],
+
+the collinearity equations (equation 1 of the second source paper). Arrays only, compiled.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.compiled import inner_kernel, kernel
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+INTERSECTED, FEW_RAYS, PARALLEL, BEHIND_CAMERA, NOT_CONVERGED = range(5)
+
+# Rays that meet at less put the point 10,000 bases away: one pixel of a common camera decides.
+_MIN_ANGLE_RAD = 1e-4
+_MAX_STEPS = 50
+_CONVERGED = 1e-10  # last step over the distance of the point
+
+
+@inner_kernel
+def _into_camera(ground_from_image: _Floats, x: float, y: float, z: float, out: _Floats) -> None:
+    for i in range(3):
+        column = ground_from_image[:, i]
+        out[i] = column[0] * x + column[1] * y + column[2] * z
+
+
+@inner_kernel
+def _projection_gradient(
+    ground_from_image: _Floats, u: _Floats, distance: float, out: _Floats
+) -> None:
+    """d(x, y) / d(X, Y, Z), written to out (2, 3); u is the point in the camera."""
+    depth = -u[2]
+    for axis in range(2):
+        for j in range(3):
+            out[axis, j] = (distance / depth) * (
+                ground_from_image[j, axis] + u[axis] / depth * ground_from_image[j, 2]
+            )
+
+
+@kernel
+def project(
+    ground_m: _Floats,
+    point: _Ints,
+    image: _Ints,
+    ground_from_image: _Floats,
+    position_m: _Floats,
+    distance_px: _Floats,
+) -> _Floats:
+    """Image coordinates (m, 2) x, y in px of ground points, NaN where behind the camera.
+
+    Parameters
+    ----------
+    ground_m
+        (p, 3) ground points.
+    point, image
+        (m,) which point is projected into which image.
+    ground_from_image
+        (n, 3, 3) rotations.
+    position_m
+        (n, 3) projection centres.
+    distance_px
+        (n,) principal distance of every image.
+    """
+    xy = np.full((len(point), 2), np.nan)
+    u = np.empty(3)
+    for k in range(len(point)):
+        i = image[k]
+        line = ground_m[point[k]] - position_m[i]
+        _into_camera(ground_from_image[i], line[0], line[1], line[2], u)
+        if u[2] < 0.0:
+            xy[k, 0] = -distance_px[i] * u[0] / u[2]
+            xy[k, 1] = -distance_px[i] * u[1] / u[2]
+    return xy
+
+
+@kernel
+def project_derivatives(
+    ground_m: _Floats,
+    point: _Ints,
+    image: _Ints,
+    ground_from_image: _Floats,
+    rotation_derivatives: _Floats,
+    position_m: _Floats,
+    distance_px: _Floats,
+) -> tuple[_Floats, _Floats, _Floats]:
+    """Image coordinates and their derivatives, NaN where a point is behind the camera.
+
+    Parameters are those of `project`, with
+
+    rotation_derivatives
+        (n, 3, 3, 3) derivatives of ground_from_image with respect to the three angles.
+
+    Returns
+    -------
+    xy
+        (m, 2) px.
+    by_angles
+        (m, 2, 3) px/rad.
+    by_ground
+        (m, 2, 3) px/m with respect to X, Y, Z of the point; those with respect to the
+        projection centre are their negatives.
+    """
+    m = len(point)
+    xy = np.full((m, 2), np.nan)
+    by_angles, by_ground = np.full((m, 2, 3), np.nan), np.full((m, 2, 3), np.nan)
+    u, du = np.empty(3), np.empty(3)
+    for k in range(m):
+        i = image[k]
+        line = ground_m[point[k]] - position_m[i]
+        _into_camera(ground_from_image[i], line[0], line[1], line[2], u)
+        if u[2] >= 0.0:
+            continue
+        _projection_gradient(ground_from_image[i], u, distance_px[i], by_ground[k])
+        scale = -distance_px[i] / u[2]
+        for axis in range(2):
+            xy[k, axis] = scale * u[axis]
+        for angle in range(3):
+            _into_camera(rotation_derivatives[i, angle], line[0], line[1], line[2], du)
+            for axis in range(2):
+                by_angles[k, axis, angle] = scale * (du[axis] - u[axis] / u[2] * du[2])
+    return xy, by_angles, by_ground
+
+
+@inner_kernel
+def _solved(matrix: _Floats, right: _Floats, out: _Floats) -> None:
+    """Solve the symmetric 3 x 3 system by Cholesky's decomposition; NaN if not positive."""
+    a, b, c = matrix[0, 0], matrix[0, 1], matrix[0, 2]
+    l11 = np.sqrt(a)
+    l21, l31 = b / l11, c / l11
+    l22 = np.sqrt(matrix[1, 1] - l21 * l21)
+    l32 = (matrix[1, 2] - l31 * l21) / l22
+    l33 = np.sqrt(matrix[2, 2] - l31 * l31 - l32 * l32)
+    y1 = right[0] / l11
+    y2 = (right[1] - l21 * y1) / l22
+    y3 = (right[2] - l31 * y1 - l32 * y2) / l33
+    out[2] = y3 / l33
+    out[1] = (y2 - l32 * out[2]) / l22
+    out[0] = (y1 - l21 * out[1] - l31 * out[2]) / l11
+
+
+@inner_kernel
+def _directions(vectors: _Floats, image: _Ints, ground_from_image: _Floats, out: _Floats) -> None:
+    """Unit directions (r, 3) of the rays in the ground frame, written to out."""
+    for k in range(len(image)):
+        rotation, vector = ground_from_image[image[k]], vectors[k]
+        norm = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+        for i in range(3):
+            out[k, i] = (
+                rotation[i, 0] * vector[0] + rotation[i, 1] * vector[1] + rotation[i, 2] * vector[2]
+            ) / norm
+
+
+@inner_kernel
+def _are_parallel(directions: _Floats) -> bool:
+    """Whether no two of the rays (r, 3) meet at an angle of at least `_MIN_ANGLE_RAD`."""
+    for i in range(len(directions)):
+        for j in range(i):
+            a, b = directions[i], directions[j]
+            x = a[1] * b[2] - a[2] * b[1]
+            y = a[2] * b[0] - a[0] * b[2]
+            z = a[0] * b[1] - a[1] * b[0]
+            if x * x + y * y + z * z >= _MIN_ANGLE_RAD**2:
+                return False
+    return True
+
+
+@inner_kernel
+def _nearest_to_rays(
+    directions: _Floats, centres: _Floats, normals: _Floats, right: _Floats, out: _Floats
+) -> None:
+    """The point of least squared distances to the rays: sum (I - d d^T) (X - S) = 0."""
+    normals[:] = 0.0
+    right[:] = 0.0
+    for k in range(len(directions)):
+        for i in range(3):
+            for j in range(3):
+                element = -directions[k, i] * directions[k, j]
+                if i == j:
+                    element += 1.0
+                normals[i, j] += element
+                right[i] += element * centres[k, j]
+    _solved(normals, right, out)
+
+
+@inner_kernel
+def _image_step(
+    ground: _Floats,
+    vectors: _Floats,
+    image: _Ints,
+    centres: _Floats,
+    ground_from_image: _Floats,
+    work: _Floats,
+    step: _Floats,
+) -> bool:
+    """One Gauss-Newton step on the image residuals; false if the point is behind a camera.
+
+    `work` (7, 3) holds the point in the camera, the gradient (2, 3), the normals and the
+    right-hand side.
+    """
+    u, gradient, normals, right = work[0], work[1:3], work[3:6], work[6]
+    normals[:] = 0.0
+    right[:] = 0.0
+    for k in range(len(image)):
+        rotation, distance = ground_from_image[image[k]], -vectors[k, 2]
+        x, y, z = ground[0] - centres[k, 0], ground[1] - centres[k, 1], ground[2] - centres[k, 2]
+        _into_camera(rotation, x, y, z, u)
+        if not u[2] < 0.0:
+            return False
+        _projection_gradient(rotation, u, distance, gradient)
+        for axis in range(2):
+            residual = vectors[k, axis] + distance * u[axis] / u[2]
+            for i in range(3):
+                right[i] += gradient[axis, i] * residual
+                for j in range(3):
+                    normals[i, j] += gradient[axis, i] * gradient[axis, j]
+    _solved(normals, right, step)
+    return True
+
+
+@inner_kernel
+def _refined(
+    ground: _Floats,
+    vectors: _Floats,
+    image: _Ints,
+    centres: _Floats,
+    ground_from_image: _Floats,
+    work: _Floats,
+    step: _Floats,
+) -> int:
+    """Gauss-Newton from `ground` (changed in place); returns the point's status."""
+    for _ in range(_MAX_STEPS):
+        if not _image_step(ground, vectors, image, centres, ground_from_image, work, step):
+            return BEHIND_CAMERA
+        ground += step
+        moved = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
+        distance = ground[0] ** 2 + ground[1] ** 2 + ground[2] ** 2
+        if moved <= _CONVERGED**2 * distance:
+            return INTERSECTED
+    return NOT_CONVERGED
+
+
+@kernel
+def intersect_rays(
+    vectors: _Floats,
+    image: _Ints,
+    first: _Ints,
+    last: _Ints,
+    ground_from_image: _Floats,
+    position_m: _Floats,
+) -> tuple[_Floats, _Ints]:
+    """Forward intersection of k points, least squares of the image residuals.
+
+    Gauss-Newton from the point nearest to the rays, in coordinates relative to the first
+    projection centre (map coordinates of millions of metres lose no digits).
+
+    Parameters
+    ----------
+    vectors
+        (m, 3) image vectors (x, y, -c), px.
+    image
+        (m,) image of every ray.
+    first, last
+        (k,) the rays of point i are first[i] ... last[i] - 1.
+    ground_from_image
+        (n, 3, 3) rotations.
+    position_m
+        (n, 3) projection centres.
+
+    Returns
+    -------
+    ground_m
+        (k, 3), NaN where the status is not `INTERSECTED`.
+    status
+        (k,) INTERSECTED, FEW_RAYS, PARALLEL, BEHIND_CAMERA or NOT_CONVERGED.
+    """
+    ground_m = np.full((len(first), 3), np.nan)
+    status = np.full(len(first), FEW_RAYS)
+    work, step, point = np.empty((7, 3)), np.empty(3), np.empty(3)
+    for k in range(len(first)):
+        if last[k] - first[k] < 2:
+            continue
+        rays = slice(first[k], last[k])
+        images = image[rays]
+        directions = np.empty((len(images), 3))
+        _directions(vectors[rays], images, ground_from_image, directions)
+        if _are_parallel(directions):
+            status[k] = PARALLEL
+            continue
+        origin = position_m[images[0]]
+        centres = position_m[images] - origin
+        _nearest_to_rays(directions, centres, work[3:6], work[6], point)
+        status[k] = _refined(point, vectors[rays], images, centres, ground_from_image, work, step)
+        if status[k] == INTERSECTED:
+            ground_m[k] = point + origin
+    return ground_m, status
+
+
+@inner_kernel
+def _inverse_normals(by_ground: _Floats, work: _Floats, out: _Floats) -> None:
+    """(J'J)^-1 of one point's rays, J = by_ground (r, 2, 3), written to out (3, 3)."""
+    normals, unit = work[:3], work[3]
+    normals[:] = 0.0
+    for k in range(len(by_ground)):
+        for axis in range(2):
+            for i in range(3):
+                for j in range(3):
+                    normals[i, j] += by_ground[k, axis, i] * by_ground[k, axis, j]
+    for i in range(3):
+        unit[:] = 0.0
+        unit[i] = 1.0
+        _solved(normals, unit, out[i])
+
+
+@inner_kernel
+def _add_variance(
+    cofactors: _Floats, by_ground: _Floats, dx: float, dy: float, work: _Floats, out: _Floats
+) -> None:
+    """Add the covariance of a point whose ray is shifted in the image by dx, dy (one sigma)."""
+    pulled, shift = work[0], work[1]
+    for i in range(3):
+        pulled[i] = by_ground[0, i] * dx + by_ground[1, i] * dy
+    for i in range(3):
+        shift[i] = (
+            cofactors[i, 0] * pulled[0] + cofactors[i, 1] * pulled[1] + cofactors[i, 2] * pulled[2]
+        )
+    for i in range(3):
+        for j in range(3):
+            out[i, j] += shift[i] * shift[j]
+
+
+@kernel
+def intersection_precision(
+    by_angles: _Floats,
+    by_ground: _Floats,
+    offsets: _Ints,
+    image: _Ints,
+    sigma_angles_rad: _Floats,
+    sigma_position_m: _Floats,
+) -> tuple[_Floats, _Floats]:
+    """Cofactors of k intersected points, and what the orientations' errors add.
+
+    With J = d(image)/d(ground), B = d(image)/d(orientation), and second derivatives times
+    residuals left out, the implicit function theorem gives dX = -(J'J)^-1 J'B d(orientation).
+
+    Parameters
+    ----------
+    by_angles, by_ground
+        (m, 2, 3) derivatives of the m rays as from `project_derivatives`, point after point.
+    offsets
+        (k + 1,) first ray of every point, and m.
+    image
+        (m,) image of every ray.
+    sigma_angles_rad, sigma_position_m
+        (n, 3) standard deviations of the orientations, independent.
+
+    Returns
+    -------
+    cofactors
+        (k, 3, 3) m2/px2: covariance for image coordinates of unit variance.
+    from_orientations
+        (k, 3, 3) m2.
+    """
+    cofactors = np.empty((len(offsets) - 1, 3, 3))
+    from_orientations = np.zeros((len(offsets) - 1, 3, 3))
+    work = np.empty((4, 3))
+    for k in range(len(offsets) - 1):
+        _inverse_normals(by_ground[offsets[k] : offsets[k + 1]], work, cofactors[k])
+        for ray in range(offsets[k], offsets[k + 1]):
+            gradient, turned = by_ground[ray], by_angles[ray]
+            for i in range(3):
+                angle = sigma_angles_rad[image[ray], i]
+                centre = sigma_position_m[image[ray], i]
+                for dx, dy in (
+                    (turned[0, i] * angle, turned[1, i] * angle),
+                    (gradient[0, i] * centre, gradient[1, i] * centre),
+                ):
+                    _add_variance(cofactors[k], gradient, dx, dy, work, from_orientations[k])
+    return cofactors, from_orientations
