@@ -14,7 +14,7 @@ q is zero when the two rays and the base are coplanar. The derivatives are those
 term by term; the linearised equation (1) of the first source paper holds to a few per cent only.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,3 +164,304 @@ def y_parallax_derivatives(
                 by_image[k, axis] = _dot(da, left[:, axis])
                 by_image[k, axis + 2] = _dot(db, right[:, axis])
     return q, by_left, by_right, by_base, by_image
+
+
+# --- Least squares on q, one pair of images at a time ---------------------------------------
+#
+# The rotation of an image is base_from_image = frame R(omega, phi, kappa), with a frame that
+# stays: the identity for elements of the base frame, base_from_ground for angles of the ground
+# frame. The state of a pair is omega, phi, kappa left, omega, phi, kappa right, BY / BX, BZ / BX.
+
+CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
+
+_N_STATE = 8
+_MAX_ITERATIONS = 100
+# The last step changes q by an RMS below this (angles by about 1e-13 rad) ...
+_LAST_STEP_PX2 = 1e-9**2
+# ... where the sum of squares is only known to the rounding of q.
+_ROUNDING, _ROUNDING_PX2 = 1e-10, 1e-10**2
+_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-4, 1e-6, 1e10
+# Smallest pivots of normals scaled to a unit diagonal that can be solved, and that determine
+# the elements.
+_SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 1e-10
+
+_HUBER_ROUNDS, _MAX_ROUNDS = 10, 40
+_HUBER, _TUKEY = 1.345, 4.685  # 95 % efficiency on normal errors
+_SCALE_FLOOR_PX = 0.01  # no point is measured better: smaller residuals are no blunders
+_WEIGHT_CHANGE = 1e-3
+
+
+class _Pair(NamedTuple):
+    """The point pairs of two images and what stays constant in their orientation."""
+
+    left_vectors: _Floats
+    right_vectors: _Floats
+    weights: _Floats
+    left_frame: _Floats
+    right_frame: _Floats
+    phi_first: bool
+    free: _Ints
+
+
+@inner_kernel
+def _turn(frame: _Floats, angles: _Floats, phi_first: bool, axes: _Floats) -> _Floats:
+    """frame R(angles); the axes of the turns by omega, phi, kappa go to the columns of `axes`."""
+    so, sp, sk = np.sin(angles[0]), np.sin(angles[1]), np.sin(angles[2])
+    co, cp, ck = np.cos(angles[0]), np.cos(angles[1]), np.cos(angles[2])
+    turn = np.empty((3, 3))
+    if phi_first:
+        turn[0] = (cp * ck - sp * so * sk, -cp * sk - sp * so * ck, -sp * co)
+        turn[1] = (co * sk, co * ck, -so)
+        turn[2] = (sp * ck + cp * so * sk, cp * so * ck - sp * sk, cp * co)
+        omega_axis, phi_axis = (cp, 0.0, sp), (0.0, -1.0, 0.0)
+    else:
+        turn[0] = (cp * ck, -cp * sk, sp)
+        turn[1] = (co * sk + so * sp * ck, co * ck - so * sp * sk, -so * cp)
+        turn[2] = (so * sk - co * sp * ck, so * ck + co * sp * sk, co * cp)
+        omega_axis, phi_axis = (1.0, 0.0, 0.0), (0.0, co, so)
+    rotation = np.empty((3, 3))
+    for j in range(3):
+        rotation[:, j] = _rotated(frame, turn[:, j])
+    axes[:, 0], axes[:, 1] = _rotated(frame, omega_axis), _rotated(frame, phi_axis)
+    axes[:, 2] = rotation[:, 2]
+    return rotation
+
+
+@inner_kernel
+def _local_normals(
+    pair: _Pair, left: _Floats, right: _Floats, base: _Floats, n: _Floats, g: _Floats
+) -> float:
+    """Sum of weighted q^2, with normals n (8, 8) and gradient g (8,) of small turns of either
+    image about the axes of the base frame, BY and BZ."""
+    n[:], g[:] = 0.0, 0.0
+    row = np.empty(_N_STATE)
+    cost = 0.0
+    for k in range(len(pair.weights)):
+        a, b = _rotated(left, pair.left_vectors[k]), _rotated(right, pair.right_vectors[k])
+        q, da, db, dbase = _parallax_gradients(a, b, base)
+        row[0] = a[1] * da[2] - a[2] * da[1]
+        row[1] = a[2] * da[0] - a[0] * da[2]
+        row[2] = a[0] * da[1] - a[1] * da[0]
+        row[3] = b[1] * db[2] - b[2] * db[1]
+        row[4] = b[2] * db[0] - b[0] * db[2]
+        row[5] = b[0] * db[1] - b[1] * db[0]
+        row[6], row[7] = dbase[1], dbase[2]
+        weight = pair.weights[k]
+        cost += weight * q * q
+        for i in range(_N_STATE):
+            weighted = weight * row[i]
+            g[i] += weighted * q
+            for j in range(_N_STATE):
+                n[i, j] += weighted * row[j]
+    return cost
+
+
+@inner_kernel
+def _normals(pair: _Pair, state: _Floats, normals: _Floats, gradient: _Floats) -> float:
+    """Sum of weighted q^2, with the normals and the gradient of the free elements."""
+    local_normals, local_gradient = np.empty((_N_STATE, _N_STATE)), np.empty(_N_STATE)
+    elements = np.zeros((_N_STATE, _N_STATE))  # columns: elements; rows: turns, BY, BZ
+    left = _turn(pair.left_frame, state[0:3], pair.phi_first, elements[0:3, 0:3])
+    right = _turn(pair.right_frame, state[3:6], pair.phi_first, elements[3:6, 3:6])
+    elements[6, 6] = elements[7, 7] = 1.0
+    base = np.ones(3)
+    base[1:] = state[6:]
+    cost = _local_normals(pair, left, right, base, local_normals, local_gradient)
+    for i in range(len(pair.free)):
+        column = elements[:, pair.free[i]]
+        gradient[i] = (column * local_gradient).sum()
+        for j in range(len(pair.free)):
+            normals[i, j] = 0.0
+            for k in range(_N_STATE):
+                normals[i, j] += column[k] * (local_normals[k] * elements[:, pair.free[j]]).sum()
+    return cost
+
+
+@inner_kernel
+def _solved(normals: _Floats, gradient: _Floats, damping: float, step: _Floats) -> float:
+    """Write the step -(N + damping diag N)^-1 g; the smallest pivot of the scaled normals."""
+    n = len(gradient)
+    factor = np.empty((n, n))
+    scale = np.empty(n)
+    smallest = 1.0
+    for i in range(n):
+        scale[i] = np.sqrt(normals[i, i])
+        for j in range(i + 1):
+            value = normals[i, j] / (scale[i] * scale[j])
+            value += damping if i == j else 0.0
+            for k in range(j):
+                value -= factor[i, k] * factor[j, k]
+            if i == j:
+                if not value > _SINGULAR_PIVOT:
+                    return 0.0
+                smallest = min(smallest, value)
+                factor[i, i] = np.sqrt(value)
+            else:
+                factor[i, j] = value / factor[j, j]
+    for i in range(n):
+        step[i] = -gradient[i] / scale[i]
+        for k in range(i):
+            step[i] -= factor[i, k] * step[k]
+        step[i] /= factor[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            step[i] -= factor[k, i] * step[k]
+        step[i] /= factor[i, i]
+    step /= scale
+    return smallest
+
+
+@inner_kernel
+def _moved(state: _Floats, free: _Ints, step: _Floats) -> _Floats:
+    moved = state.copy()
+    for i in range(len(free)):
+        moved[free[i]] += step[i]
+    return moved
+
+
+@inner_kernel
+def _least_squares(pair: _Pair, state: _Floats, max_iterations: int) -> tuple[int, int]:
+    """Minimise the weighted sum of q^2 over the free elements of `state` (in place).
+
+    Gauss-Newton, damped as by Levenberg and Marquardt where a step does not lower the sum.
+    Returns CONVERGED, NOT_CONVERGED or RANK_DEFICIENT and the number of iterations.
+    """
+    n = len(pair.free)
+    normals, gradient, step = np.empty((n, n)), np.empty(n), np.empty(n)
+    trial_normals, trial_gradient = np.empty((n, n)), np.empty(n)
+    cost = _normals(pair, state, normals, gradient)
+    n_points = len(pair.weights)
+    damping = 0.0
+    iteration, status = 0, NOT_CONVERGED
+    while iteration < max_iterations and status == NOT_CONVERGED and damping < _MOST_DAMPING:
+        iteration += 1
+        lowered = False
+        if _solved(normals, gradient, damping, step) > 0.0:
+            trial = _moved(state, pair.free, step)
+            decrease = -(gradient * step).sum()
+            if damping <= _FIRST_DAMPING and decrease <= _LAST_STEP_PX2 * n_points:
+                state[:] = trial
+                status = CONVERGED
+                continue
+            trial_cost = _normals(pair, trial, trial_normals, trial_gradient)
+            lowered = trial_cost <= (1.0 + _ROUNDING) * cost + _ROUNDING_PX2 * n_points
+        if lowered:
+            state[:], cost = trial, trial_cost
+            normals[:], gradient[:] = trial_normals, trial_gradient
+            damping = 0.1 * damping if damping > _LEAST_DAMPING else 0.0
+        else:
+            damping = max(10.0 * damping, _FIRST_DAMPING)
+    if not _solved(normals, gradient, 0.0, step) > _RANK_PIVOT:
+        status = RANK_DEFICIENT
+    return status, iteration
+
+
+@inner_kernel
+def _residuals(pair: _Pair, state: _Floats) -> _Floats:
+    axes = np.empty((3, 3))
+    left = _turn(pair.left_frame, state[0:3], pair.phi_first, axes)
+    right = _turn(pair.right_frame, state[3:6], pair.phi_first, axes)
+    base = np.ones(3)
+    base[1:] = state[6:]
+    q = np.empty(len(pair.weights))
+    for k in range(len(q)):
+        a, b = _rotated(left, pair.left_vectors[k]), _rotated(right, pair.right_vectors[k])
+        q[k] = _parallax(a, b, base)
+    return q
+
+
+@inner_kernel
+def _reweighted(pair: _Pair, state: _Floats, tukey: bool) -> float:
+    """Write the weights of Huber or Tukey at `state`; their largest change.
+
+    The scale is the median absolute residual, corrected for the few points of small models
+    (Rousseeuw and Leroy 1987: 1 + 5 / (n - u)).
+    """
+    q = np.abs(_residuals(pair, state))
+    redundancy = max(len(q) - len(pair.free), 1)
+    scale = max(1.4826 * (1.0 + 5.0 / redundancy) * np.median(q), _SCALE_FLOOR_PX)
+    change = 0.0
+    for k in range(len(q)):
+        if tukey:
+            ratio = min(q[k] / (_TUKEY * scale), 1.0)
+            weight = (1.0 - ratio * ratio) ** 2
+        else:
+            weight = 1.0 if q[k] <= _HUBER * scale else _HUBER * scale / q[k]
+        change = max(change, abs(weight - pair.weights[k]))
+        pair.weights[k] = weight
+    return change
+
+
+@inner_kernel
+def _find_blunders(pair: _Pair, state: _Floats) -> None:
+    """Write robust weights: Huber's from any start, then Tukey's, which reject."""
+    for iteration in range(_MAX_ROUNDS):
+        tukey = iteration >= _HUBER_ROUNDS
+        change = _reweighted(pair, state, tukey)
+        _least_squares(pair, state, 2)
+        if tukey and change < _WEIGHT_CHANGE:
+            break
+
+
+@kernel
+def adjust_pairs(
+    left_vectors: _Floats,
+    right_vectors: _Floats,
+    weights: _Floats,
+    offsets: _Ints,
+    frames: _Floats,
+    phi_first: bool,
+    free: _Ints,
+    robust: bool,
+    pairs: _Ints,
+    state: _Floats,
+    rms: _Floats,
+    status: _Ints,
+    iterations: _Ints,
+) -> None:
+    """Relative orientation of some pairs of images by least squares on q.
+
+    Parameters
+    ----------
+    left_vectors, right_vectors
+        (N, 3) image vectors (x, y, -c) in px, pair after pair.
+    weights
+        (N,) weights of the points; overwritten if `robust` (0: rejected).
+    offsets
+        (P + 1,) first point of each pair, and N.
+    frames
+        (P, 2, 3, 3) constant rotations from the frame of the angles to the base frame, of the
+        left and of the right image.
+    phi_first
+        Angle system: true for ``phi-omega-kappa``, false for ``omega-phi-kappa``.
+    free
+        Numbers of the elements to solve for, in the order of `state`.
+    robust
+        Find blunders and set their weights.
+    pairs
+        Numbers of the pairs to adjust (so that threads can share the work).
+    state
+        (P, 8) omega, phi, kappa of the left, then of the right image, radians, and BY / BX,
+        BZ / BX: start values, overwritten by the solution.
+    rms
+        (P,) root mean square of q over the points of positive weight, px; written.
+    status, iterations
+        (P,) CONVERGED, NOT_CONVERGED or RANK_DEFICIENT; iterations of the last adjustment.
+    """
+    for p in pairs:
+        points = slice(offsets[p], offsets[p + 1])
+        pair = _Pair(
+            left_vectors[points],
+            right_vectors[points],
+            weights[points],
+            frames[p, 0],
+            frames[p, 1],
+            phi_first,
+            free,
+        )
+        status[p], iterations[p] = _least_squares(pair, state[p], _MAX_ITERATIONS)
+        if robust:
+            _find_blunders(pair, state[p])
+            status[p], iterations[p] = _least_squares(pair, state[p], _MAX_ITERATIONS)
+        q = _residuals(pair, state[p])[pair.weights > 0.0]
+        rms[p] = np.sqrt(np.mean(q * q))
