@@ -240,6 +240,8 @@ def _refined(
             return BEHIND_CAMERA
         ground += step
         moved = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
+        if not np.isfinite(moved):
+            return NOT_CONVERGED
         distance = ground[0] ** 2 + ground[1] ** 2 + ground[2] ** 2
         if moved <= _CONVERGED**2 * distance:
             return INTERSECTED
