@@ -1,0 +1,464 @@
+"""Scenarios: what a simulated block consists of, read from TOML and checked like a block.
+
+Every table of the file is a frozen dataclass below; a field's annotation carries the rule its
+value must obey, so that the class is the documentation, the reader and the check.
+"""
+
+import difflib
+import math
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar, get_type_hints
+
+from posstats.camera import Camera, Distortion, DistortionModel
+from posstats.errors import BlockFormatError
+from posstats.rotation import AngleSystem
+
+T = TypeVar("T")
+TableT = TypeVar("TableT", bound="_Table")
+
+
+@dataclass(frozen=True)
+class _Rule:
+    """What a value must be, in words, and the reader that returns it or raises ValueError."""
+
+    expected: str
+    read: Callable[[Any], Any]
+
+
+def _number(accepts: Callable[[float], bool] = math.isfinite) -> Callable[[Any], float]:
+    def read(value: Any) -> float:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not (is_number and math.isfinite(value) and accepts(value)):
+            raise ValueError
+        return float(value)
+
+    return read
+
+
+def _whole(smallest: int) -> Callable[[Any], int]:
+    def read(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
+            raise ValueError
+        return value
+
+    return read
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError
+    return value
+
+
+def _one_of(*choices: str) -> _Rule:
+    def read(value: Any) -> str:
+        if value not in choices:
+            raise ValueError
+        return str(value)
+
+    return _Rule("one of " + ", ".join(choices), read)
+
+
+def _several(read_one: Callable[[Any], T], count: int | None = None) -> Callable[[Any], Any]:
+    """Reader of a list of `count` values; of one value or a list where `count` is None."""
+
+    def read(value: Any) -> tuple[T, ...]:
+        values = value if isinstance(value, list | tuple) else [value]
+        listed = isinstance(value, list | tuple)
+        if not values or (count is not None and not (listed and len(values) == count)):
+            raise ValueError
+        return tuple(read_one(one) for one in values)
+
+    return read
+
+
+_Text = Annotated[str, _Rule("a text", _text)]
+_MaybeText = Annotated[str | None, _Rule("a text", _text)]
+_Number = Annotated[float, _Rule("a number", _number())]
+_Positive = Annotated[float, _Rule("a number above 0", _number(lambda v: v > 0.0))]
+_MaybePositive = Annotated[float | None, _Rule("a number above 0", _number(lambda v: v > 0.0))]
+_NotNegative = Annotated[float, _Rule("a number of at least 0", _number(lambda v: v >= 0.0))]
+_Share = Annotated[float, _Rule("a share from 0 to below 1", _number(lambda v: 0.0 <= v < 1.0))]
+_Overlap = Annotated[float, _Rule("a share above 0 and below 1", _number(lambda v: 0.0 < v < 1.0))]
+_SideOverlap = Annotated[
+    float,
+    _Rule("a share above -1 and below 1 (negative: a gap)", _number(lambda v: -1.0 < v < 1.0)),
+]
+_SmallAngle = Annotated[
+    float, _Rule("an angle in radians from 0 to 0.5", _number(lambda v: 0.0 <= v <= 0.5))
+]
+_ErrorAngle = Annotated[
+    float, _Rule("an angle in radians within ±0.5", _number(lambda v: abs(v) <= 0.5))
+]
+_Count = Annotated[int, _Rule("a whole number of at least 0", _whole(0))]
+_MaybeCount = Annotated[int | None, _Rule("a whole number of at least 1", _whole(1))]
+_Counts = Annotated[
+    tuple[int, ...],
+    _Rule("a whole number of at least 1, or a list of them", _several(_whole(1))),
+]
+_Numbers = Annotated[tuple[float, ...], _Rule("a number or a list of them", _several(_number()))]
+_MaybePair = Annotated[
+    tuple[float, float] | None, _Rule("a list of two numbers", _several(_number(), 2))
+]
+_Pair = Annotated[tuple[float, float], _Rule("a list of two numbers", _several(_number(), 2))]
+
+
+class _Table:
+    """A table of the scenario file."""
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        return ()
+
+
+@dataclass(frozen=True)
+class BlockSpec(_Table):
+    """``[block]``: name, seed, frame. Keys as in block.toml, and `origin_m`, the block's middle.
+
+    `origin_m` is easting and northing in the crs (or in the Cartesian frame without a crs).
+    """
+
+    name: _Text
+    seed: _Count = 0
+    angles: Annotated[AngleSystem, _one_of("omega-phi-kappa", "phi-omega-kappa")] = (
+        "omega-phi-kappa"
+    )
+    crs: _MaybeText = None
+    frame: Annotated[Literal["tangent", "grid"], _one_of("tangent", "grid")] = "tangent"
+    origin_m: _Pair = (0.0, 0.0)
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        if self.crs is not None and self.origin_m == (0.0, 0.0):
+            yield "crs needs origin_m, the easting and northing of the block's middle"
+
+
+@dataclass(frozen=True)
+class DistortionSpec(_Table):
+    """``[camera.distortion]``, as in block.toml."""
+
+    model: Annotated[DistortionModel, _one_of("none", "radial", "brown")] = "none"
+    k1: _Number = 0.0
+    k2: _Number = 0.0
+    k3: _Number = 0.0
+    p1: _Number = 0.0
+    p2: _Number = 0.0
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        if self.model == "none" and any((self.k1, self.k2, self.k3, self.p1, self.p2)):
+            yield 'has coefficients, but its model is "none"'
+        if self.model == "radial" and any((self.k3, self.p1, self.p2)):
+            yield 'has k3, p1 or p2, which the model "radial" does not use'
+
+
+@dataclass(frozen=True)
+class CameraSpec(_Table):
+    """``[camera]``, as in block.toml; image y points forward, x to the right of the flight."""
+
+    width_px: _Positive
+    height_px: _Positive
+    name: _Text = "camera"
+    pixel_size_mm: _MaybePositive = None
+    principal_distance_mm: _MaybePositive = None
+    principal_distance_px: _MaybePositive = None
+    principal_point_px: _MaybePair = None
+    distortion: DistortionSpec = DistortionSpec()
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        if (self.principal_distance_mm is None) == (self.principal_distance_px is None):
+            yield "needs either principal_distance_mm or principal_distance_px"
+        if self.principal_distance_mm is not None and self.pixel_size_mm is None:
+            yield "principal_distance_mm needs pixel_size_mm"
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that images the block."""
+        if self.principal_distance_px is not None:
+            distance_px = self.principal_distance_px
+        elif self.principal_distance_mm is not None and self.pixel_size_mm is not None:
+            distance_px = self.principal_distance_mm / self.pixel_size_mm
+        else:
+            raise BlockFormatError([f"[camera] {next(iter(self.conflicts()))}"])
+        d = self.distortion
+        return Camera(
+            id=self.name,
+            name=self.name,
+            width_px=self.width_px,
+            height_px=self.height_px,
+            principal_distance_px=distance_px,
+            principal_point_px=self.principal_point_px or (self.width_px / 2, self.height_px / 2),
+            pixel_size_mm=self.pixel_size_mm,
+            distortion=Distortion(d.model, d.k1, d.k2, d.k3, d.p1, d.p2),
+        )
+
+
+@dataclass(frozen=True)
+class Flight(_Table):
+    """``[flight]``: how the block is flown.
+
+    `images_per_strip` is one number for `n_strips` strips or a list; `headings_deg` (clockwise
+    from grid north) is repeated over the strips, so [0, 180] flies them alternately. Strips of
+    parallel headings lie side by side, in that order; other directions cross them in the middle.
+    The turn is the time from a strip's last exposure to the next strip's first.
+    """
+
+    forward_overlap: _Overlap
+    side_overlap: _SideOverlap
+    images_per_strip: _Counts
+    n_strips: _MaybeCount = None
+    scale_denominator: _MaybePositive = None
+    height_m: _MaybePositive = None
+    headings_deg: _Numbers = (0.0, 180.0)
+    speed_m_per_s: _Positive = 100.0
+    turn_s: _Positive = 300.0
+    start_time_s: _Number = 0.0
+    tilt_rad: _SmallAngle = 0.01
+    position_jitter_m: _NotNegative = 0.0
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        if (self.scale_denominator is None) == (self.height_m is None):
+            yield "needs either scale_denominator or height_m (above the mean terrain)"
+        if self.n_strips is not None and len(self.images_per_strip) not in (1, self.n_strips):
+            yield (
+                f"images_per_strip lists {len(self.images_per_strip)} strips, "
+                f"n_strips is {self.n_strips}"
+            )
+
+    @property
+    def image_counts(self) -> tuple[int, ...]:
+        """Number of images of every strip."""
+        if self.n_strips is not None and len(self.images_per_strip) == 1:
+            return self.images_per_strip * self.n_strips
+        return self.images_per_strip
+
+
+@dataclass(frozen=True)
+class Terrain(_Table):
+    """``[terrain]``: a smooth random surface; `relief_m` is the amplitude of a single wave.
+
+    Its standard deviation is `relief_m` / sqrt(2), like that of a sine of this amplitude.
+    """
+
+    mean_height_m: _Number = 0.0
+    relief_m: _NotNegative = 0.0
+    wavelength_m: _Positive = 10_000.0
+
+
+@dataclass(frozen=True)
+class TiePointSpec(_Table):
+    """``[tie_points]``: about how many a stereo model has, evenly spread on the ground."""
+
+    per_model: _Positive = 100.0
+
+
+@dataclass(frozen=True)
+class AngleError(_Table):
+    """``[errors.omega]`` ...: error = constant + drift (t - t of the first exposure) + noise.
+
+    `strip_rad` is the standard deviation of a random constant of each strip, `noise_rad` that
+    of the white noise.
+    """
+
+    constant_rad: _ErrorAngle = 0.0
+    drift_rad_per_s: _Number = 0.0
+    strip_rad: _SmallAngle = 0.0
+    noise_rad: _SmallAngle = 0.0
+
+
+@dataclass(frozen=True)
+class PositionError(_Table):
+    """``[errors.position]``: standard deviations, alike in the three axes.
+
+    White noise, and a random shift and drift (from its first exposure) of each strip.
+    """
+
+    noise_m: _NotNegative = 0.0
+    strip_shift_m: _NotNegative = 0.0
+    strip_drift_m_per_s: _NotNegative = 0.0
+
+
+@dataclass(frozen=True)
+class Errors(_Table):
+    """``[errors]``: of the image measurements and of the POS.
+
+    The errors of omega, phi, kappa are added to the angles of the block's system in the ground
+    frame; those of pitch, roll, yaw (e about image x, y, z, a boresight) turn the camera:
+    R_pos = R exp([e]x). `blunder_px` is the length of a blunder of random direction.
+    """
+
+    image_px: _NotNegative = 0.0
+    blunder_share: _Share = 0.0
+    blunder_px: _Positive = 20.0
+    position: PositionError = PositionError()
+    omega: AngleError = AngleError()
+    phi: AngleError = AngleError()
+    kappa: AngleError = AngleError()
+    pitch: AngleError = AngleError()
+    roll: AngleError = AngleError()
+    yaw: AngleError = AngleError()
+
+
+@dataclass(frozen=True)
+class PointSpec(_Table):
+    """``[check_points]`` and ``[control_points]``.
+
+    Attributes
+    ----------
+    n
+        Number of points.
+    distribution
+        ``grid``: the centres of a grid of cells over the projection centres; ``corners``: a grid
+        that reaches the corners (1 is the middle, 4 the corners); or ``random``.
+    image_px, ground_m
+        Standard deviation of their image measurements and of their survey.
+    """
+
+    n: _Count = 0
+    distribution: Annotated[
+        Literal["grid", "corners", "random"], _one_of("grid", "corners", "random")
+    ] = "grid"
+    image_px: _NotNegative = 0.0
+    ground_m: _NotNegative = 0.0
+
+
+@dataclass(frozen=True)
+class AccuracySpec(_Table):
+    """``[accuracy]``, as in block.toml: what the block states, whatever the errors are."""
+
+    position_m: _Positive = 0.05
+    angle_deg: _Positive = 0.005
+    image_px: _Positive = 0.2
+
+
+@dataclass(frozen=True)
+class Scenario(_Table):
+    """A block to be simulated: one attribute per table of the scenario file."""
+
+    block: BlockSpec
+    camera: CameraSpec
+    flight: Flight
+    terrain: Terrain = Terrain()
+    tie_points: TiePointSpec = TiePointSpec()
+    errors: Errors = Errors()
+    check_points: PointSpec = PointSpec()
+    control_points: PointSpec = field(default_factory=lambda: PointSpec(distribution="corners"))
+    accuracy: AccuracySpec = AccuracySpec()
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        if self.flight.scale_denominator is not None and self.camera.pixel_size_mm is None:
+            yield "[flight] scale_denominator needs [camera] pixel_size_mm (or give height_m)"
+        if 2.0 * self.errors.blunder_px >= min(self.camera.width_px, self.camera.height_px):
+            yield (
+                f"[errors] blunder_px is {self.errors.blunder_px:g}; expected less than half "
+                "the image format"
+            )
+
+    @property
+    def height_m(self) -> float:
+        """Flying height above the mean terrain."""
+        if self.flight.height_m is not None:
+            return self.flight.height_m
+        if self.flight.scale_denominator is None or self.camera.pixel_size_mm is None:
+            raise BlockFormatError(["[flight] needs either scale_denominator or height_m"])
+        distance_mm = self.camera.camera.principal_distance_px * self.camera.pixel_size_mm
+        return self.flight.scale_denominator * distance_mm / 1000.0
+
+
+def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
+    """Read and check a scenario.
+
+    Parameters
+    ----------
+    source
+        A TOML file, the name of a scenario that comes with posstats (``area1``), or the tables
+        as a mapping.
+
+    Raises
+    ------
+    BlockFormatError
+        With every finding: unknown keys (with the nearest known one), missing keys, values of
+        the wrong type or size, contradictions, a file that is not there or not TOML.
+    """
+    if isinstance(source, Mapping):
+        return _scenario(source, "scenario")
+    path = Path(source)
+    shipped = files("posstats") / "scenarios" / f"{source}.toml"
+    try:
+        if path.name == str(source) and not path.exists() and shipped.is_file():
+            content = shipped.read_bytes()
+        else:
+            content = path.read_bytes()
+    except OSError as error:
+        raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
+    return _scenario(_toml(content, path.name), path.name)
+
+
+def _toml(content: bytes, name: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise BlockFormatError([f"{name}: is not a text file in UTF-8"]) from error
+    except tomllib.TOMLDecodeError as error:
+        raise BlockFormatError([f"{name}: is not valid TOML: {error}"]) from error
+
+
+def _scenario(tables: Mapping[str, Any], name: str) -> Scenario:
+    findings: list[str] = []
+    scenario = _section(Scenario, tables, "", findings)
+    if scenario is None or findings:
+        raise BlockFormatError([f"{name}: {finding}" for finding in findings])
+    return scenario
+
+
+def _section(cls: type[TableT], table: Any, where: str, findings: list[str]) -> TableT | None:
+    """The dataclass of a table; None, and sentences added to `findings`, where it is wrong."""
+    if not isinstance(table, Mapping):
+        findings.append(f"[{where}] is {table!r}; expected a table of keys and values")
+        return None
+    before = len(findings)
+    hints = get_type_hints(cls, include_extras=True)
+    findings.extend(_unknown(key, hints, where) for key in table if key not in hints)
+    findings.extend(
+        f"{_key(where, one.name)} is missing"
+        for one in fields(cls)  # type: ignore[arg-type]
+        if one.default is MISSING and one.default_factory is MISSING and one.name not in table
+    )
+    values = {
+        key: _value(hint, table[key], where, key, findings)
+        for key, hint in hints.items()
+        if key in table
+    }
+    if len(findings) > before:
+        return None
+    section = cls(**values)
+    prefix = f"[{where}] " if where else ""
+    findings.extend(prefix + sentence for sentence in section.conflicts())
+    return section
+
+
+def _value(hint: Any, value: Any, where: str, key: str, findings: list[str]) -> Any:
+    if is_dataclass(hint) and isinstance(hint, type):
+        return _section(hint, value, f"{where}.{key}" if where else key, findings)
+    rule: _Rule = hint.__metadata__[0]
+    try:
+        return rule.read(value)
+    except ValueError:
+        findings.append(f"{_key(where, key)} is {value!r}; expected {rule.expected}")
+        return None
+
+
+def _key(where: str, key: str) -> str:
+    return f"[{where}] {key}" if where else f"[{key}]"
+
+
+def _unknown(key: str, known: Iterable[str], where: str) -> str:
+    near = difflib.get_close_matches(key, list(known), n=1, cutoff=0.0)
+    return f"{_key(where, key)} is not known; the nearest known key is {_key(where, near[0])}"
