@@ -17,7 +17,7 @@ CAMERA_ANGLE_NAMES = ("pitch", "roll", "yaw")
 _Floats = NDArray[np.float64]
 
 
-def _axis_rotation(axis: int, angle_rad: _Floats) -> _Floats:
+def axis_rotation(axis: int, angle_rad: _Floats) -> _Floats:
     """Rotation (..., 3, 3) by `angle_rad` (...) about coordinate axis 0, 1 or 2, right-handed."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
@@ -37,7 +37,7 @@ def _factors(angles_rad: _Floats, system: AngleSystem) -> list[tuple[int, int, f
         # The papers' phi turns clockwise about +Y (a3 = -sin phi cos omega).
         order = [(1, 1, -1.0), (0, 0, 1.0), (2, 2, 1.0)]
     return [
-        (index, axis, sign, _axis_rotation(axis, sign * angles_rad[..., index]))
+        (index, axis, sign, axis_rotation(axis, sign * angles_rad[..., index]))
         for index, axis, sign in order
     ]
 

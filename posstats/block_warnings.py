@@ -1,0 +1,125 @@
+"""What is odd about a block, but no reason to refuse it: sentences for the report."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.block import Block
+from posstats.block_toml import BlockSettings
+from posstats.stereo import MIN_MODEL_POINTS, stereo_models
+
+_SHOWN = 5
+
+
+def block_warnings(block: Block) -> list[str]:
+    """Sentences, with counts and the first few ids, on images, strips, models and points."""
+    return [
+        *_point_warnings(block),
+        *_strip_warnings(block),
+        *_model_warnings(block),
+        *_adjusted_warnings(block),
+    ]
+
+
+def settings_warnings(settings: BlockSettings) -> list[str]:
+    """Sentences on what block.toml leaves open."""
+    warnings = []
+    if settings.orthometric and settings.geoid is None:
+        warnings.append(
+            "Heights are orthometric and no geoid grid is given: they are taken as ellipsoidal."
+        )
+    if settings.geoid is not None and not settings.tangent:
+        warnings.append('The geoid grid is not used: frame = "grid" takes heights as they are.')
+    if settings.assumed_accuracy:
+        accuracy = settings.accuracy
+        values = {
+            "position_m": f"position_m = {accuracy.position_m:g}",
+            "angle_deg": f"angle_deg = {np.degrees(accuracy.angle_rad):g}",
+            "image_px": f"image_px = {accuracy.image_px:g}",
+        }
+        assumed = ", ".join(values[key] for key in settings.assumed_accuracy)
+        warnings.append(f"The accuracy is not stated in full; assumed: {assumed}.")
+    return warnings
+
+
+def time_warnings(time_in_file_order_s: NDArray[np.float64], images: Sequence[str]) -> list[str]:
+    """A sentence on rows that are earlier than the row before; images in file order."""
+    back = np.flatnonzero(np.diff(time_in_file_order_s) < 0.0) + 1
+    if len(back) == 0:
+        return []
+    which = [images[int(row)] for row in back]
+    return [f"{_count(which, 'row')} of orientations out of time order: {_listed(which)}."]
+
+
+def _point_warnings(block: Block) -> list[str]:
+    ties = block.tie_points
+    rays = np.bincount(ties.point, minlength=len(ties.point_id))
+    surveyed = set() if block.ground_points is None else set(block.ground_points.point)
+    once = [str(point) for point in ties.point_id[rays == 1] if point not in surveyed]
+    warnings = []
+    if once:
+        warnings.append(f"{_count(once, 'tie point')} seen in one image only: {_listed(once)}.")
+    if block.ground_points is not None:
+        n_rays = dict(zip(ties.point_id, rays, strict=True))
+        weak = [str(point) for point in block.ground_points.point if n_rays.get(point, 0) < 2]
+        if weak:
+            warnings.append(
+                f"{_count(weak, 'ground point')} measured in fewer than two images:"
+                f" {_listed(weak)}."
+            )
+    seen = np.bincount(ties.image, minlength=len(block.orientations))
+    unseen = [str(image) for image in block.orientations.image[seen == 0]]
+    if unseen:
+        warnings.append(f"{_count(unseen, 'image')} without tie points: {_listed(unseen)}.")
+    return warnings
+
+
+def _strip_warnings(block: Block) -> list[str]:
+    strips, counts = np.unique(block.orientations.strip.astype(str), return_counts=True)
+    single = [str(strip) for strip in strips[counts == 1]]
+    if not single:
+        return []
+    return [f"{_count(single, 'strip')} of one image: {_listed(single)}."]
+
+
+def _model_warnings(block: Block) -> list[str]:
+    """Models of fewer than six common points, those of none among them."""
+    orientations = block.orientations
+    models = stereo_models(block)
+    enough = models.pairs.n_points >= MIN_MODEL_POINTS
+    formed = set(zip(models.pairs.left[enough], models.pairs.right[enough], strict=True))
+    few = []
+    for strip in orientations.strips:
+        images = np.flatnonzero(orientations.strip == strip)
+        few += [
+            f"{orientations.image[left]} - {orientations.image[right]}"
+            for left, right in pairwise(images)
+            if (left, right) not in formed
+        ]
+    if not few:
+        return []
+    return [
+        f"{_count(few, 'stereo model')} with fewer than {MIN_MODEL_POINTS} common points,"
+        f" left out of the statistics: {_listed(few)}."
+    ]
+
+
+def _adjusted_warnings(block: Block) -> list[str]:
+    if block.adjusted is None:
+        return []
+    missing = np.isnan(block.adjusted.position_m).any(axis=1)
+    images = [str(image) for image in block.orientations.image[missing]]
+    if not images:
+        return []
+    return [f"{_count(images, 'image')} without adjusted orientation: {_listed(images)}."]
+
+
+def _count(items: Sequence[str], noun: str) -> str:
+    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
+
+
+def _listed(items: Sequence[str]) -> str:
+    hidden = len(items) - _SHOWN
+    return ", ".join(items[:_SHOWN]) + (f" and {hidden} more" if hidden > 0 else "")
