@@ -1,0 +1,321 @@
+"""Which angles to correct, in which form: rule sets are data, decisions carry their reason."""
+
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal, Protocol, get_args
+
+import numpy as np
+from statsmodels.stats.multitest import multipletests
+
+from posstats.errors import BlockFormatError, PosstatsError
+from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit, FitKind
+from posstats.toml_section import nearest
+
+Form = Literal["none", "constant", "linear"]
+
+
+class RuleFormatError(BlockFormatError):
+    """A rule file that cannot be accepted; `findings` has one sentence per fault."""
+
+
+@dataclass(frozen=True)
+class RuleSet:
+    """When an angle is corrected.
+
+    Attributes
+    ----------
+    name, description
+        For people.
+    fit
+        The fit that is tested, and whose values are subtracted.
+    forms
+        What may be subtracted: a constant, a line, or whichever nested tests prefer.
+    alpha
+        Level of the tests.
+    holm
+        Adjust the p-values of the angles of one scope (Holm 1979).
+    min_r_squared
+        Demanded of the line.
+    min_parallax_gain
+        Share of the mean y-parallax that the correction must save on images that took no part
+        in the fit; 0 asks for no such proof.
+    """
+
+    fit: FitKind
+    forms: tuple[Form, ...]
+    alpha: float
+    name: str = ""
+    description: str = ""
+    holm: bool = False
+    min_r_squared: float = 0.0
+    min_parallax_gain: float = 0.0
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Whether and how one angle of one scope ("block" or a strip) is corrected, and why."""
+
+    angle: str
+    frame: str
+    scope: str
+    correct: bool
+    form: Form
+    fit: FitKind
+    rule: str
+    reason: str
+
+
+class Parallax(Protocol):
+    """Mean y-parallax of the same models without and with corrections, px."""
+
+    raw_px: float
+    corrected_px: float
+    method: str
+
+
+OutOfSampleTest = Callable[[Sequence[Decision]], Parallax]
+
+
+def load_rules(name_or_path: str | Path) -> RuleSet:
+    """A rule set that comes with posstats (``paper``, ``strict``), or a TOML file.
+
+    Raises
+    ------
+    RuleFormatError
+        For a file that is not TOML, an unknown or missing key, a value out of range.
+    PosstatsError
+        If there is no such rule set or file.
+    """
+    folder = files("posstats") / "rules"
+    known = sorted(Path(entry.name).stem for entry in folder.iterdir() if entry.name[0] != "_")
+    name = str(name_or_path)
+    if name in known:
+        return _read_rules((folder / f"{name}.toml").read_bytes(), f"{name}.toml", name)
+    path = Path(name_or_path)
+    if not path.is_file():
+        raise PosstatsError(
+            f"no rule file {name}, and no rule set of that name{nearest(name, known)}"
+        )
+    return _read_rules(path.read_bytes(), path.name, path.stem)
+
+
+def decide(
+    regressions: Sequence[AngleRegression],
+    rules: RuleSet,
+    *,
+    scope: Literal["block", "strip"] = "block",
+    out_of_sample: OutOfSampleTest | None = None,
+) -> tuple[Decision, ...]:
+    """Decide for every angle of the block, or of every strip.
+
+    Parameters
+    ----------
+    regressions
+        Of one frame, from `regress`.
+    scope
+        Correct by one function of time for the block, or by one for every strip.
+    out_of_sample
+        Parallax on images that took no part in the fits, if the given decisions were applied
+        (`posstats.validation.out_of_sample_parallax` of the models). Needed by rules with
+        `min_parallax_gain`.
+
+    Raises
+    ------
+    PosstatsError
+        If the rules need `out_of_sample` and it is not given.
+
+    Notes
+    -----
+    Gains are judged step by step: the angle that saves most comes first, and every further
+    angle must save its share of what the angles before it left.
+    """
+    if rules.min_parallax_gain > 0.0 and out_of_sample is None:
+        raise PosstatsError(f"rules {rules.name!r} judge by parallax: they need the stereo models")
+    wanted = [r for r in regressions if (r.scope == BLOCK_SCOPE) == (scope == "block")]
+    decisions: list[Decision] = []
+    for each in dict.fromkeys(regression.scope for regression in wanted):
+        proposals = _proposals([r for r in wanted if r.scope == each], rules)
+        if rules.min_parallax_gain > 0.0 and out_of_sample is not None:
+            proposals = _proven(proposals, rules.min_parallax_gain, out_of_sample)
+        decisions += proposals
+    return tuple(decisions)
+
+
+def chosen_fits(
+    regression: AngleRegression, fit: FitKind
+) -> tuple[DriftFit | None, ConstantFit | None]:
+    """Line and constant of the kind of fit that a rule set uses."""
+    if fit == "ols":
+        return regression.ols, regression.ols_constant
+    return regression.gls, regression.gls_constant
+
+
+def _proposals(regressions: Sequence[AngleRegression], rules: RuleSet) -> list[Decision]:
+    """Decisions by the tests alone, for the angles of one scope."""
+    fits = [chosen_fits(regression, rules.fit) for regression in regressions]
+    line_p = _adjusted([None if line is None else line.f_pvalue for line, _ in fits], rules.holm)
+    mean_p = _adjusted([None if mean is None else mean.p_value for _, mean in fits], rules.holm)
+    return [
+        _proposal(regression, rules, line, mean)
+        for regression, line, mean in zip(regressions, line_p, mean_p, strict=True)
+    ]
+
+
+def _adjusted(p_values: Sequence[float | None], holm: bool) -> list[float | None]:
+    """Holm's adjustment; None (no test) stays None and does not count."""
+    tested = [k for k, p in enumerate(p_values) if p is not None]
+    if not holm or not tested:
+        return list(p_values)
+    adjusted: list[float | None] = [None] * len(p_values)
+    _, corrected, _, _ = multipletests([p_values[k] for k in tested], method="holm")
+    for k, p in zip(tested, corrected, strict=True):
+        adjusted[k] = float(p)
+    return adjusted
+
+
+def _proposal(
+    regression: AngleRegression, rules: RuleSet, line_p: float | None, mean_p: float | None
+) -> Decision:
+    line, mean = chosen_fits(regression, rules.fit)
+    form: Form = "none"
+    reasons = [] if regression.reason is None else [f"no line can be fitted: {regression.reason}"]
+    if "linear" in rules.forms and line is not None and line_p is not None:
+        significant = line_p < rules.alpha
+        explains = line.rsquared >= rules.min_r_squared
+        form = "linear" if significant and explains else form
+        reasons.append(_line_reason(line, line_p, rules))
+    if form == "none" and "constant" in rules.forms and mean is not None and mean_p is not None:
+        form = "constant" if mean_p < rules.alpha else form
+        reasons.append(_constant_reason(mean, mean_p, rules))
+    if rules.fit == "gls" and not regression.covariance_known:
+        reasons.append(
+            "the angle errors came without covariance, so standard errors rest on their scatter"
+        )
+    return Decision(
+        angle=regression.angle,
+        frame=regression.frame,
+        scope=regression.scope,
+        correct=form != "none",
+        form=form,
+        fit=rules.fit,
+        rule=rules.name,
+        reason="; ".join(reasons),
+    )
+
+
+def _line_reason(line: DriftFit, p_value: float, rules: RuleSet) -> str:
+    verdict = "significant" if p_value < rules.alpha else "not significant"
+    text = (
+        f"drift {line.slope:.2e} ± {line.slope_se:.1e} rad/s {verdict} "
+        f"({_shown_p(p_value)}, level {rules.alpha:g})"
+    )
+    if rules.min_r_squared > 0.0:
+        side = "reaches" if line.rsquared >= rules.min_r_squared else "is below"
+        text += f", R2 = {line.rsquared:.3f} {side} {rules.min_r_squared:g}"
+    return text
+
+
+def _constant_reason(mean: ConstantFit, p_value: float, rules: RuleSet) -> str:
+    verdict = "significant" if p_value < rules.alpha else "not significant"
+    return f"constant {mean.value:.2e} ± {mean.se:.1e} rad {verdict} ({_shown_p(p_value)})"
+
+
+def _shown_p(p_value: float) -> str:
+    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
+
+
+def _proven(
+    proposals: list[Decision], min_gain: float, out_of_sample: OutOfSampleTest
+) -> list[Decision]:
+    """Keep the corrections that save parallax out of sample, the largest saving first."""
+    waiting = [k for k, decision in enumerate(proposals) if decision.correct]
+    kept: list[int] = []
+    judged = dict(enumerate(proposals))
+    while waiting:
+        before, tries = _tried(proposals, kept, waiting, out_of_sample)
+        gains = {k: 1.0 - after.corrected_px / before for k, after in tries.items()}
+        best = max(waiting, key=lambda k: np.nan_to_num(gains[k], nan=-np.inf))
+        if gains[best] >= min_gain:
+            judged[best] = _with_gain(proposals[best], gains[best], min_gain, tries[best].method)
+            kept.append(best)
+            waiting.remove(best)
+            continue
+        for k in waiting:
+            judged[k] = _with_gain(proposals[k], gains[k], min_gain, tries[k].method)
+        break
+    return [judged[k] for k in range(len(proposals))]
+
+
+def _tried(
+    proposals: list[Decision], kept: list[int], waiting: list[int], out_of_sample: OutOfSampleTest
+) -> tuple[float, dict[int, Parallax]]:
+    """Parallax with what is kept so far, and with each waiting correction added to it."""
+
+    def only(wanted: list[int]) -> list[Decision]:
+        return [
+            decision if k in wanted else replace(decision, correct=False)
+            for k, decision in enumerate(proposals)
+        ]
+
+    tries = {k: out_of_sample(only([*kept, k])) for k in waiting}
+    before = out_of_sample(only(kept)).corrected_px
+    return before, tries
+
+
+def _with_gain(decision: Decision, gain: float, min_gain: float, method: str) -> Decision:
+    if np.isnan(gain):
+        verdict = f"not testable out of sample ({method}): not corrected"
+        return replace(decision, correct=False, form="none", reason=f"{decision.reason}; {verdict}")
+    change = f"{abs(gain):.1%} {'less' if gain >= 0.0 else 'more'} mean parallax"
+    verdict = f"{change} out of sample ({method}), {min_gain:.0%} less needed"
+    kept = gain >= min_gain
+    form: Form = decision.form if kept else "none"
+    return replace(decision, correct=kept, form=form, reason=f"{decision.reason}; {verdict}")
+
+
+def _read_rules(content: bytes, source: str, name: str) -> RuleSet:
+    try:
+        values = tomllib.loads(content.decode("utf-8"))
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        raise RuleFormatError([f"{source}: not a TOML file: {problem}"]) from problem
+    findings = [f"{source}: {finding}" for finding in _findings(values)]
+    if findings:
+        raise RuleFormatError(findings)
+    return RuleSet(**{"name": name, **values, "forms": tuple(values["forms"])})
+
+
+def _findings(values: Mapping[str, Any]) -> list[str]:
+    """What is wrong with a rule file, one sentence per key."""
+    known = [field.name for field in fields(RuleSet)]
+    findings = [f"unknown key {key!r}{nearest(key, known)}" for key in values if key not in known]
+    checks: dict[str, tuple[Callable[[Any], bool], str]] = {
+        "name": (lambda v: isinstance(v, str) and v != "", "text"),
+        "description": (lambda v: isinstance(v, str), "text"),
+        "fit": (lambda v: v in get_args(FitKind), "ols or gls"),
+        "forms": (_is_forms, 'a list of "constant", "linear"'),
+        "alpha": (lambda v: _is_number(v) and 0.0 < v < 1.0, "a number between 0 and 1"),
+        "holm": (lambda v: isinstance(v, bool), "true or false"),
+        "min_r_squared": (lambda v: _is_number(v) and 0.0 <= v <= 1.0, "a number from 0 to 1"),
+        "min_parallax_gain": (lambda v: _is_number(v) and 0.0 <= v < 1.0, "a share from 0 to 1"),
+    }
+    for key, (accepts, expected) in checks.items():
+        if key in values and not accepts(values[key]):
+            findings.append(f"{key}: found {values[key]!r}, expected {expected}")
+        elif key not in values and key in ("fit", "forms", "alpha"):
+            findings.append(f"{key}: is missing, expected {expected}")
+    return findings
+
+
+def _is_forms(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and 0 < len(value) == len(set(map(str, value)))
+        and all(form in ("constant", "linear") for form in value)
+    )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
