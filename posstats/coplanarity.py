@@ -41,7 +41,7 @@ def _dot(a: _Vector, b: _Vector) -> float:
 
 
 @inner_kernel
-def _parallax(a: _Vector, b: _Vector, base: _Floats) -> float:
+def _parallax(a: _Vector, b: _Vector, base: _Vector) -> float:
     u = base[0] * b[2] - base[2] * b[0]
     v = base[0] * a[2] - base[2] * a[0]
     w = a[0] * b[2] - b[0] * a[2]
@@ -50,7 +50,7 @@ def _parallax(a: _Vector, b: _Vector, base: _Floats) -> float:
 
 @inner_kernel
 def _parallax_gradients(
-    a: _Vector, b: _Vector, base: _Floats
+    a: _Vector, b: _Vector, base: _Vector
 ) -> tuple[float, _Vector, _Vector, _Vector]:
     """q, and its gradients with respect to a, b and the base."""
     u = base[0] * b[2] - base[2] * b[0]
@@ -176,16 +176,14 @@ CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
 
 _N_STATE = 8
 _MAX_ITERATIONS = 100
-# The last step changes q by an RMS below this (angles by about 1e-13 rad) ...
-_LAST_STEP_PX2 = 1e-9**2
-# ... where the sum of squares is only known to the rounding of q.
-_ROUNDING, _ROUNDING_PX2 = 1e-10, 1e-10**2
+_LAST_STEP_PX = 1e-9  # RMS change of q; of the angles about 1e-13 rad
+_ROUNDING, _ROUNDING_PX2 = 1e-10, 1e-10**2  # to which a sum of squares, and q^2, are known
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-4, 1e-6, 1e10
 # Smallest pivots of normals scaled to a unit diagonal that can be solved, and that determine
 # the elements.
 _SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 1e-10
 
-_HUBER_ROUNDS, _MAX_ROUNDS = 10, 40
+_HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-2
 _HUBER, _TUKEY = 1.345, 4.685  # 95 % efficiency on normal errors
 _SCALE_FLOOR_PX = 0.01  # no point is measured better: smaller residuals are no blunders
 _WEIGHT_CHANGE = 1e-3
@@ -197,43 +195,55 @@ class _Pair(NamedTuple):
     left_vectors: _Floats
     right_vectors: _Floats
     weights: _Floats
-    left_frame: _Floats
-    right_frame: _Floats
+    frames: _Floats
     phi_first: bool
     free: _Ints
 
 
 @inner_kernel
-def _turn(frame: _Floats, angles: _Floats, phi_first: bool, axes: _Floats) -> _Floats:
-    """frame R(angles); the axes of the turns by omega, phi, kappa go to the columns of `axes`."""
-    so, sp, sk = np.sin(angles[0]), np.sin(angles[1]), np.sin(angles[2])
-    co, cp, ck = np.cos(angles[0]), np.cos(angles[1]), np.cos(angles[2])
-    turn = np.empty((3, 3))
-    if phi_first:
-        turn[0] = (cp * ck - sp * so * sk, -cp * sk - sp * so * ck, -sp * co)
-        turn[1] = (co * sk, co * ck, -so)
-        turn[2] = (sp * ck + cp * so * sk, cp * so * ck - sp * sk, cp * co)
-        omega_axis, phi_axis = (cp, 0.0, sp), (0.0, -1.0, 0.0)
-    else:
-        turn[0] = (cp * ck, -cp * sk, sp)
-        turn[1] = (co * sk + so * sp * ck, co * ck - so * sp * sk, -so * cp)
-        turn[2] = (so * sk - co * sp * ck, so * ck + co * sp * sk, co * cp)
-        omega_axis, phi_axis = (1.0, 0.0, 0.0), (0.0, co, so)
-    rotation = np.empty((3, 3))
-    for j in range(3):
-        rotation[:, j] = _rotated(frame, turn[:, j])
-    axes[:, 0], axes[:, 1] = _rotated(frame, omega_axis), _rotated(frame, phi_axis)
-    axes[:, 2] = rotation[:, 2]
+def _turns(pair: _Pair, state: _Floats, elements: _Floats) -> _Floats:
+    """Rotations base_from_image (2, 3, 3) of the left and the right image.
+
+    The axes of the turns by omega, phi and kappa go to the columns of the image's 3 x 3 block
+    on the diagonal of `elements` (8, 8).
+    """
+    rotation = np.empty((2, 3, 3))
+    for image in range(2):
+        k = 3 * image
+        so, sp, sk = np.sin(state[k]), np.sin(state[k + 1]), np.sin(state[k + 2])
+        co, cp, ck = np.cos(state[k]), np.cos(state[k + 1]), np.cos(state[k + 2])
+        if pair.phi_first:
+            first = (cp * ck - sp * so * sk, co * sk, sp * ck + cp * so * sk)
+            second = (-cp * sk - sp * so * ck, co * ck, cp * so * ck - sp * sk)
+            third = (-sp * co, -so, cp * co)
+            omega_axis, phi_axis = (cp, 0.0, sp), (0.0, -1.0, 0.0)
+        else:
+            first = (cp * ck, co * sk + so * sp * ck, so * sk - co * sp * ck)
+            second = (-cp * sk, co * ck - so * sp * sk, so * ck + co * sp * sk)
+            third = (sp, -so * cp, co * cp)
+            omega_axis, phi_axis = (1.0, 0.0, 0.0), (0.0, co, so)
+        for i in range(3):
+            row = pair.frames[image, i]
+            rotation[image, i, 0] = _dot(row, first)
+            rotation[image, i, 1] = _dot(row, second)
+            rotation[image, i, 2] = elements[k + i, k + 2] = _dot(row, third)
+            elements[k + i, k] = _dot(row, omega_axis)
+            elements[k + i, k + 1] = _dot(row, phi_axis)
     return rotation
 
 
 @inner_kernel
-def _local_normals(
-    pair: _Pair, left: _Floats, right: _Floats, base: _Floats, n: _Floats, g: _Floats
-) -> float:
-    """Sum of weighted q^2, with normals n (8, 8) and gradient g (8,) of small turns of either
-    image about the axes of the base frame, BY and BZ."""
-    n[:], g[:] = 0.0, 0.0
+def _base(state: _Floats) -> _Vector:
+    return (1.0, state[6], state[7])
+
+
+@inner_kernel
+def _local_normals(pair: _Pair, rotation: _Floats, base: _Vector, n: _Floats, g: _Floats) -> float:
+    """Sum of weighted q^2; adds to the normals n (8, 8) and the gradient g (8,).
+
+    Their elements are small turns of either image about the axes of the base frame, BY and BZ.
+    """
+    left, right = rotation[0], rotation[1]
     row = np.empty(_N_STATE)
     cost = 0.0
     for k in range(len(pair.weights)):
@@ -257,23 +267,29 @@ def _local_normals(
 
 
 @inner_kernel
+def _sum_of_products(a: _Floats, b: _Floats) -> float:
+    total = 0.0
+    for i in range(len(a)):
+        total += a[i] * b[i]
+    return total
+
+
+@inner_kernel
 def _normals(pair: _Pair, state: _Floats, normals: _Floats, gradient: _Floats) -> float:
     """Sum of weighted q^2, with the normals and the gradient of the free elements."""
-    local_normals, local_gradient = np.empty((_N_STATE, _N_STATE)), np.empty(_N_STATE)
+    local_normals, local_gradient = np.zeros((_N_STATE, _N_STATE)), np.zeros(_N_STATE)
     elements = np.zeros((_N_STATE, _N_STATE))  # columns: elements; rows: turns, BY, BZ
-    left = _turn(pair.left_frame, state[0:3], pair.phi_first, elements[0:3, 0:3])
-    right = _turn(pair.right_frame, state[3:6], pair.phi_first, elements[3:6, 3:6])
+    rotation = _turns(pair, state, elements)
     elements[6, 6] = elements[7, 7] = 1.0
-    base = np.ones(3)
-    base[1:] = state[6:]
-    cost = _local_normals(pair, left, right, base, local_normals, local_gradient)
+    cost = _local_normals(pair, rotation, _base(state), local_normals, local_gradient)
     for i in range(len(pair.free)):
         column = elements[:, pair.free[i]]
-        gradient[i] = (column * local_gradient).sum()
+        gradient[i] = _sum_of_products(column, local_gradient)
         for j in range(len(pair.free)):
+            other = elements[:, pair.free[j]]
             normals[i, j] = 0.0
             for k in range(_N_STATE):
-                normals[i, j] += column[k] * (local_normals[k] * elements[:, pair.free[j]]).sum()
+                normals[i, j] += column[k] * _sum_of_products(local_normals[k], other)
     return cost
 
 
@@ -289,8 +305,7 @@ def _solved(normals: _Floats, gradient: _Floats, damping: float, step: _Floats) 
         for j in range(i + 1):
             value = normals[i, j] / (scale[i] * scale[j])
             value += damping if i == j else 0.0
-            for k in range(j):
-                value -= factor[i, k] * factor[j, k]
+            value -= _sum_of_products(factor[i, :j], factor[j, :j])
             if i == j:
                 if not value > _SINGULAR_PIVOT:
                     return 0.0
@@ -299,15 +314,13 @@ def _solved(normals: _Floats, gradient: _Floats, damping: float, step: _Floats) 
             else:
                 factor[i, j] = value / factor[j, j]
     for i in range(n):
-        step[i] = -gradient[i] / scale[i]
-        for k in range(i):
-            step[i] -= factor[i, k] * step[k]
+        step[i] = -gradient[i] / scale[i] - _sum_of_products(factor[i, :i], step[:i])
         step[i] /= factor[i, i]
     for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            step[i] -= factor[k, i] * step[k]
+        step[i] -= _sum_of_products(factor[i + 1 :, i], step[i + 1 :])
         step[i] /= factor[i, i]
-    step /= scale
+    for i in range(n):
+        step[i] /= scale[i]
     return smallest
 
 
@@ -320,11 +333,18 @@ def _moved(state: _Floats, free: _Ints, step: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _least_squares(pair: _Pair, state: _Floats, max_iterations: int) -> tuple[int, int]:
+def _copy(source: _Floats, target: _Floats) -> None:
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@inner_kernel
+def _least_squares(pair: _Pair, state: _Floats, last_step_px: float) -> tuple[int, int]:
     """Minimise the weighted sum of q^2 over the free elements of `state` (in place).
 
-    Gauss-Newton, damped as by Levenberg and Marquardt where a step does not lower the sum.
-    Returns CONVERGED, NOT_CONVERGED or RANK_DEFICIENT and the number of iterations.
+    Gauss-Newton, damped as by Levenberg and Marquardt where a step does not lower the sum; the
+    last step changes q by an RMS below `last_step_px`. Returns CONVERGED, NOT_CONVERGED or
+    RANK_DEFICIENT and the number of iterations.
     """
     n = len(pair.free)
     normals, gradient, step = np.empty((n, n)), np.empty(n), np.empty(n)
@@ -333,21 +353,23 @@ def _least_squares(pair: _Pair, state: _Floats, max_iterations: int) -> tuple[in
     n_points = len(pair.weights)
     damping = 0.0
     iteration, status = 0, NOT_CONVERGED
-    while iteration < max_iterations and status == NOT_CONVERGED and damping < _MOST_DAMPING:
+    while iteration < _MAX_ITERATIONS and status == NOT_CONVERGED and damping < _MOST_DAMPING:
         iteration += 1
         lowered = False
         if _solved(normals, gradient, damping, step) > 0.0:
             trial = _moved(state, pair.free, step)
-            decrease = -(gradient * step).sum()
-            if damping <= _FIRST_DAMPING and decrease <= _LAST_STEP_PX2 * n_points:
-                state[:] = trial
+            decrease = -_sum_of_products(gradient, step)
+            if damping <= _FIRST_DAMPING and decrease <= last_step_px * last_step_px * n_points:
+                _copy(trial, state)
                 status = CONVERGED
                 continue
             trial_cost = _normals(pair, trial, trial_normals, trial_gradient)
             lowered = trial_cost <= (1.0 + _ROUNDING) * cost + _ROUNDING_PX2 * n_points
         if lowered:
-            state[:], cost = trial, trial_cost
-            normals[:], gradient[:] = trial_normals, trial_gradient
+            _copy(trial, state)
+            cost = trial_cost
+            normals, trial_normals = trial_normals, normals
+            gradient, trial_gradient = trial_gradient, gradient
             damping = 0.1 * damping if damping > _LEAST_DAMPING else 0.0
         else:
             damping = max(10.0 * damping, _FIRST_DAMPING)
@@ -358,16 +380,38 @@ def _least_squares(pair: _Pair, state: _Floats, max_iterations: int) -> tuple[in
 
 @inner_kernel
 def _residuals(pair: _Pair, state: _Floats) -> _Floats:
-    axes = np.empty((3, 3))
-    left = _turn(pair.left_frame, state[0:3], pair.phi_first, axes)
-    right = _turn(pair.right_frame, state[3:6], pair.phi_first, axes)
-    base = np.ones(3)
-    base[1:] = state[6:]
+    elements = np.empty((_N_STATE, _N_STATE))
+    rotation = _turns(pair, state, elements)
+    left, right = rotation[0], rotation[1]
     q = np.empty(len(pair.weights))
     for k in range(len(q)):
         a, b = _rotated(left, pair.left_vectors[k]), _rotated(right, pair.right_vectors[k])
-        q[k] = _parallax(a, b, base)
+        q[k] = _parallax(a, b, _base(state))
     return q
+
+
+@inner_kernel
+def _median_size(q: _Floats) -> float:
+    """Median of |q|, the upper one of two, by Hoare's selection (`np.median` compiles longer)."""
+    size = np.empty(len(q))
+    for i in range(len(q)):
+        size[i] = abs(q[i])
+    first, last, middle = 0, len(q) - 1, len(q) // 2
+    while first < last:
+        pivot, i, j = size[middle], first, last
+        while i <= j:
+            while size[i] < pivot:
+                i += 1
+            while pivot < size[j]:
+                j -= 1
+            if i <= j:
+                size[i], size[j] = size[j], size[i]
+                i, j = i + 1, j - 1
+        if j < middle:
+            first = i
+        if middle < i:
+            last = j
+    return size[middle]
 
 
 @inner_kernel
@@ -377,19 +421,32 @@ def _reweighted(pair: _Pair, state: _Floats, tukey: bool) -> float:
     The scale is the median absolute residual, corrected for the few points of small models
     (Rousseeuw and Leroy 1987: 1 + 5 / (n - u)).
     """
-    q = np.abs(_residuals(pair, state))
+    q = _residuals(pair, state)
     redundancy = max(len(q) - len(pair.free), 1)
-    scale = max(1.4826 * (1.0 + 5.0 / redundancy) * np.median(q), _SCALE_FLOOR_PX)
+    scale = 1.4826 * (1.0 + 5.0 / redundancy) * _median_size(q)
+    scale = max(scale, _SCALE_FLOOR_PX)
     change = 0.0
     for k in range(len(q)):
+        size = abs(q[k]) / scale
         if tukey:
-            ratio = min(q[k] / (_TUKEY * scale), 1.0)
-            weight = (1.0 - ratio * ratio) ** 2
+            ratio = min(size / _TUKEY, 1.0)
+            weight = (1.0 - ratio * ratio) * (1.0 - ratio * ratio)
         else:
-            weight = 1.0 if q[k] <= _HUBER * scale else _HUBER * scale / q[k]
+            weight = min(1.0, _HUBER / size)
         change = max(change, abs(weight - pair.weights[k]))
         pair.weights[k] = weight
     return change
+
+
+@inner_kernel
+def _rms_of_kept(pair: _Pair, state: _Floats) -> float:
+    q = _residuals(pair, state)
+    total, count = 0.0, 0
+    for k in range(len(q)):
+        if pair.weights[k] > 0.0:
+            total += q[k] * q[k]
+            count += 1
+    return np.sqrt(total / count)
 
 
 @inner_kernel
@@ -398,7 +455,7 @@ def _find_blunders(pair: _Pair, state: _Floats) -> None:
     for iteration in range(_MAX_ROUNDS):
         tukey = iteration >= _HUBER_ROUNDS
         change = _reweighted(pair, state, tukey)
-        _least_squares(pair, state, 2)
+        _least_squares(pair, state, _ROUND_STEP_PX)
         if tukey and change < _WEIGHT_CHANGE:
             break
 
@@ -454,14 +511,12 @@ def adjust_pairs(
             left_vectors[points],
             right_vectors[points],
             weights[points],
-            frames[p, 0],
-            frames[p, 1],
+            frames[p],
             phi_first,
             free,
         )
-        status[p], iterations[p] = _least_squares(pair, state[p], _MAX_ITERATIONS)
+        status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
         if robust:
             _find_blunders(pair, state[p])
-            status[p], iterations[p] = _least_squares(pair, state[p], _MAX_ITERATIONS)
-        q = _residuals(pair, state[p])[pair.weights > 0.0]
-        rms[p] = np.sqrt(np.mean(q * q))
+            status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
+        rms[p] = _rms_of_kept(pair, state[p])
