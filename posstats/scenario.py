@@ -4,119 +4,54 @@ Every table of the file is a frozen dataclass below; a field's annotation carrie
 value must obey, so that the class is the documentation, the reader and the check.
 """
 
-import difflib
-import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_type_hints
+from typing import Annotated, Any, Literal
 
 from posstats.camera import Camera, Distortion, DistortionModel
+from posstats.checked_table import Rule, Table, number, one_of, read_table, several, text, whole
 from posstats.errors import BlockFormatError
 from posstats.rotation import AngleSystem
 
-T = TypeVar("T")
-TableT = TypeVar("TableT", bound="_Table")
+_MAX_IMAGES = 100_000
 
-
-@dataclass(frozen=True)
-class _Rule:
-    """What a value must be, in words, and the reader that returns it or raises ValueError."""
-
-    expected: str
-    read: Callable[[Any], Any]
-
-
-def _number(accepts: Callable[[float], bool] = math.isfinite) -> Callable[[Any], float]:
-    def read(value: Any) -> float:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not (is_number and math.isfinite(value) and accepts(value)):
-            raise ValueError
-        return float(value)
-
-    return read
-
-
-def _whole(smallest: int) -> Callable[[Any], int]:
-    def read(value: Any) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
-            raise ValueError
-        return value
-
-    return read
-
-
-def _text(value: Any) -> str:
-    if not isinstance(value, str) or not value.strip():
-        raise ValueError
-    return value
-
-
-def _one_of(*choices: str) -> _Rule:
-    def read(value: Any) -> str:
-        if value not in choices:
-            raise ValueError
-        return str(value)
-
-    return _Rule("one of " + ", ".join(choices), read)
-
-
-def _several(read_one: Callable[[Any], T], count: int | None = None) -> Callable[[Any], Any]:
-    """Reader of a list of `count` values; of one value or a list where `count` is None."""
-
-    def read(value: Any) -> tuple[T, ...]:
-        values = value if isinstance(value, list | tuple) else [value]
-        listed = isinstance(value, list | tuple)
-        if not values or (count is not None and not (listed and len(values) == count)):
-            raise ValueError
-        return tuple(read_one(one) for one in values)
-
-    return read
-
-
-_Text = Annotated[str, _Rule("a text", _text)]
-_MaybeText = Annotated[str | None, _Rule("a text", _text)]
-_Number = Annotated[float, _Rule("a number", _number())]
-_Positive = Annotated[float, _Rule("a number above 0", _number(lambda v: v > 0.0))]
-_MaybePositive = Annotated[float | None, _Rule("a number above 0", _number(lambda v: v > 0.0))]
-_NotNegative = Annotated[float, _Rule("a number of at least 0", _number(lambda v: v >= 0.0))]
-_Share = Annotated[float, _Rule("a share from 0 to below 1", _number(lambda v: 0.0 <= v < 1.0))]
-_Overlap = Annotated[float, _Rule("a share above 0 and below 1", _number(lambda v: 0.0 < v < 1.0))]
+_Text = Annotated[str, Rule("a text", text)]
+_MaybeText = Annotated[str | None, Rule("a text", text)]
+_Number = Annotated[float, Rule("a number", number())]
+_Positive = Annotated[float, Rule("a number above 0", number(lambda v: v > 0.0))]
+_MaybePositive = Annotated[float | None, Rule("a number above 0", number(lambda v: v > 0.0))]
+_NotNegative = Annotated[float, Rule("a number of at least 0", number(lambda v: v >= 0.0))]
+_Share = Annotated[float, Rule("a share from 0 to below 1", number(lambda v: 0.0 <= v < 1.0))]
+_Overlap = Annotated[float, Rule("a share above 0 and below 1", number(lambda v: 0.0 < v < 1.0))]
 _SideOverlap = Annotated[
     float,
-    _Rule("a share above -1 and below 1 (negative: a gap)", _number(lambda v: -1.0 < v < 1.0)),
+    Rule("a share above -1 and below 1 (negative: a gap)", number(lambda v: -1.0 < v < 1.0)),
 ]
 _SmallAngle = Annotated[
-    float, _Rule("an angle in radians from 0 to 0.5", _number(lambda v: 0.0 <= v <= 0.5))
+    float, Rule("an angle in radians from 0 to 0.5", number(lambda v: 0.0 <= v <= 0.5))
 ]
 _ErrorAngle = Annotated[
-    float, _Rule("an angle in radians within ±0.5", _number(lambda v: abs(v) <= 0.5))
+    float, Rule("an angle in radians within ±0.5", number(lambda v: abs(v) <= 0.5))
 ]
-_Count = Annotated[int, _Rule("a whole number of at least 0", _whole(0))]
-_MaybeCount = Annotated[int | None, _Rule("a whole number of at least 1", _whole(1))]
+_Count = Annotated[int, Rule("a whole number of at least 0", whole(0))]
+_PointCount = Annotated[int, Rule("a whole number from 0 to 100000", whole(0, 100_000))]
+_MaybeCount = Annotated[int | None, Rule("a whole number from 1 to 10000", whole(1, 10_000))]
 _Counts = Annotated[
     tuple[int, ...],
-    _Rule("a whole number of at least 1, or a list of them", _several(_whole(1))),
+    Rule("a whole number from 1 to 10000, or a list of them", several(whole(1, 10_000))),
 ]
-_Numbers = Annotated[tuple[float, ...], _Rule("a number or a list of them", _several(_number()))]
+_Numbers = Annotated[tuple[float, ...], Rule("a number or a list of them", several(number()))]
 _MaybePair = Annotated[
-    tuple[float, float] | None, _Rule("a list of two numbers", _several(_number(), 2))
+    tuple[float, float] | None, Rule("a list of two numbers", several(number(), 2))
 ]
-_Pair = Annotated[tuple[float, float], _Rule("a list of two numbers", _several(_number(), 2))]
-
-
-class _Table:
-    """A table of the scenario file."""
-
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
-        return ()
+_Pair = Annotated[tuple[float, float], Rule("a list of two numbers", several(number(), 2))]
 
 
 @dataclass(frozen=True)
-class BlockSpec(_Table):
+class BlockSpec(Table):
     """``[block]``: name, seed, frame. Keys as in block.toml, and `origin_m`, the block's middle.
 
     `origin_m` is easting and northing in the crs (or in the Cartesian frame without a crs).
@@ -124,11 +59,9 @@ class BlockSpec(_Table):
 
     name: _Text
     seed: _Count = 0
-    angles: Annotated[AngleSystem, _one_of("omega-phi-kappa", "phi-omega-kappa")] = (
-        "omega-phi-kappa"
-    )
+    angles: Annotated[AngleSystem, one_of("omega-phi-kappa", "phi-omega-kappa")] = "omega-phi-kappa"
     crs: _MaybeText = None
-    frame: Annotated[Literal["tangent", "grid"], _one_of("tangent", "grid")] = "tangent"
+    frame: Annotated[Literal["tangent", "grid"], one_of("tangent", "grid")] = "tangent"
     origin_m: _Pair = (0.0, 0.0)
 
     def conflicts(self) -> Iterable[str]:
@@ -138,10 +71,10 @@ class BlockSpec(_Table):
 
 
 @dataclass(frozen=True)
-class DistortionSpec(_Table):
+class DistortionSpec(Table):
     """``[camera.distortion]``, as in block.toml."""
 
-    model: Annotated[DistortionModel, _one_of("none", "radial", "brown")] = "none"
+    model: Annotated[DistortionModel, one_of("none", "radial", "brown")] = "none"
     k1: _Number = 0.0
     k2: _Number = 0.0
     k3: _Number = 0.0
@@ -157,7 +90,7 @@ class DistortionSpec(_Table):
 
 
 @dataclass(frozen=True)
-class CameraSpec(_Table):
+class CameraSpec(Table):
     """``[camera]``, as in block.toml; image y points forward, x to the right of the flight."""
 
     width_px: _Positive
@@ -184,7 +117,7 @@ class CameraSpec(_Table):
         elif self.principal_distance_mm is not None and self.pixel_size_mm is not None:
             distance_px = self.principal_distance_mm / self.pixel_size_mm
         else:
-            raise BlockFormatError([f"[camera] {next(iter(self.conflicts()))}"])
+            raise BlockFormatError([f"camera: {next(iter(self.conflicts()))}"])
         d = self.distortion
         return Camera(
             id=self.name,
@@ -199,7 +132,7 @@ class CameraSpec(_Table):
 
 
 @dataclass(frozen=True)
-class Flight(_Table):
+class Flight(Table):
     """``[flight]``: how the block is flown.
 
     `images_per_strip` is one number for `n_strips` strips or a list; `headings_deg` (clockwise
@@ -230,6 +163,8 @@ class Flight(_Table):
                 f"images_per_strip lists {len(self.images_per_strip)} strips, "
                 f"n_strips is {self.n_strips}"
             )
+        if sum(self.image_counts) > _MAX_IMAGES:
+            yield f"found {sum(self.image_counts)} images, expected at most {_MAX_IMAGES}"
 
     @property
     def image_counts(self) -> tuple[int, ...]:
@@ -240,7 +175,7 @@ class Flight(_Table):
 
 
 @dataclass(frozen=True)
-class Terrain(_Table):
+class Terrain(Table):
     """``[terrain]``: a smooth random surface; `relief_m` is the amplitude of a single wave.
 
     Its standard deviation is `relief_m` / sqrt(2), like that of a sine of this amplitude.
@@ -252,14 +187,14 @@ class Terrain(_Table):
 
 
 @dataclass(frozen=True)
-class TiePointSpec(_Table):
+class TiePointSpec(Table):
     """``[tie_points]``: about how many a stereo model has, evenly spread on the ground."""
 
     per_model: _Positive = 100.0
 
 
 @dataclass(frozen=True)
-class AngleError(_Table):
+class AngleError(Table):
     """``[errors.omega]`` ...: error = constant + drift (t - t of the first exposure) + noise.
 
     `strip_rad` is the standard deviation of a random constant of each strip, `noise_rad` that
@@ -273,7 +208,7 @@ class AngleError(_Table):
 
 
 @dataclass(frozen=True)
-class PositionError(_Table):
+class PositionError(Table):
     """``[errors.position]``: standard deviations, alike in the three axes.
 
     White noise, and a random shift and drift (from its first exposure) of each strip.
@@ -285,7 +220,7 @@ class PositionError(_Table):
 
 
 @dataclass(frozen=True)
-class Errors(_Table):
+class Errors(Table):
     """``[errors]``: of the image measurements and of the POS.
 
     The errors of omega, phi, kappa are added to the angles of the block's system in the ground
@@ -306,7 +241,7 @@ class Errors(_Table):
 
 
 @dataclass(frozen=True)
-class PointSpec(_Table):
+class PointSpec(Table):
     """``[check_points]`` and ``[control_points]``.
 
     Attributes
@@ -320,16 +255,16 @@ class PointSpec(_Table):
         Standard deviation of their image measurements and of their survey.
     """
 
-    n: _Count = 0
+    n: _PointCount = 0
     distribution: Annotated[
-        Literal["grid", "corners", "random"], _one_of("grid", "corners", "random")
+        Literal["grid", "corners", "random"], one_of("grid", "corners", "random")
     ] = "grid"
     image_px: _NotNegative = 0.0
     ground_m: _NotNegative = 0.0
 
 
 @dataclass(frozen=True)
-class AccuracySpec(_Table):
+class AccuracySpec(Table):
     """``[accuracy]``, as in block.toml: what the block states, whatever the errors are."""
 
     position_m: _Positive = 0.05
@@ -338,7 +273,7 @@ class AccuracySpec(_Table):
 
 
 @dataclass(frozen=True)
-class Scenario(_Table):
+class Scenario(Table):
     """A block to be simulated: one attribute per table of the scenario file."""
 
     block: BlockSpec
@@ -354,10 +289,10 @@ class Scenario(_Table):
     def conflicts(self) -> Iterable[str]:
         """Sentences on values that contradict each other."""
         if self.flight.scale_denominator is not None and self.camera.pixel_size_mm is None:
-            yield "[flight] scale_denominator needs [camera] pixel_size_mm (or give height_m)"
+            yield "flight.scale_denominator needs camera.pixel_size_mm (or give height_m)"
         if 2.0 * self.errors.blunder_px >= min(self.camera.width_px, self.camera.height_px):
             yield (
-                f"[errors] blunder_px is {self.errors.blunder_px:g}; expected less than half "
+                f"errors.blunder_px: found {self.errors.blunder_px:g}, expected less than half "
                 "the image format"
             )
 
@@ -367,7 +302,7 @@ class Scenario(_Table):
         if self.flight.height_m is not None:
             return self.flight.height_m
         if self.flight.scale_denominator is None or self.camera.pixel_size_mm is None:
-            raise BlockFormatError(["[flight] needs either scale_denominator or height_m"])
+            raise BlockFormatError(["flight: needs either scale_denominator or height_m"])
         distance_mm = self.camera.camera.principal_distance_px * self.camera.pixel_size_mm
         return self.flight.scale_denominator * distance_mm / 1000.0
 
@@ -388,7 +323,7 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
         the wrong type or size, contradictions, a file that is not there or not TOML.
     """
     if isinstance(source, Mapping):
-        return _scenario(source, "scenario")
+        return read_table(Scenario, source, "scenario")
     path = Path(source)
     shipped = files("posstats") / "scenarios" / f"{source}.toml"
     try:
@@ -398,7 +333,7 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
             content = path.read_bytes()
     except OSError as error:
         raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
-    return _scenario(_toml(content, path.name), path.name)
+    return read_table(Scenario, _toml(content, path.name), path.name)
 
 
 def _toml(content: bytes, name: str) -> dict[str, Any]:
@@ -408,57 +343,3 @@ def _toml(content: bytes, name: str) -> dict[str, Any]:
         raise BlockFormatError([f"{name}: is not a text file in UTF-8"]) from error
     except tomllib.TOMLDecodeError as error:
         raise BlockFormatError([f"{name}: is not valid TOML: {error}"]) from error
-
-
-def _scenario(tables: Mapping[str, Any], name: str) -> Scenario:
-    findings: list[str] = []
-    scenario = _section(Scenario, tables, "", findings)
-    if scenario is None or findings:
-        raise BlockFormatError([f"{name}: {finding}" for finding in findings])
-    return scenario
-
-
-def _section(cls: type[TableT], table: Any, where: str, findings: list[str]) -> TableT | None:
-    """The dataclass of a table; None, and sentences added to `findings`, where it is wrong."""
-    if not isinstance(table, Mapping):
-        findings.append(f"[{where}] is {table!r}; expected a table of keys and values")
-        return None
-    before = len(findings)
-    hints = get_type_hints(cls, include_extras=True)
-    findings.extend(_unknown(key, hints, where) for key in table if key not in hints)
-    findings.extend(
-        f"{_key(where, one.name)} is missing"
-        for one in fields(cls)  # type: ignore[arg-type]
-        if one.default is MISSING and one.default_factory is MISSING and one.name not in table
-    )
-    values = {
-        key: _value(hint, table[key], where, key, findings)
-        for key, hint in hints.items()
-        if key in table
-    }
-    if len(findings) > before:
-        return None
-    section = cls(**values)
-    prefix = f"[{where}] " if where else ""
-    findings.extend(prefix + sentence for sentence in section.conflicts())
-    return section
-
-
-def _value(hint: Any, value: Any, where: str, key: str, findings: list[str]) -> Any:
-    if is_dataclass(hint) and isinstance(hint, type):
-        return _section(hint, value, f"{where}.{key}" if where else key, findings)
-    rule: _Rule = hint.__metadata__[0]
-    try:
-        return rule.read(value)
-    except ValueError:
-        findings.append(f"{_key(where, key)} is {value!r}; expected {rule.expected}")
-        return None
-
-
-def _key(where: str, key: str) -> str:
-    return f"[{where}] {key}" if where else f"[{key}]"
-
-
-def _unknown(key: str, known: Iterable[str], where: str) -> str:
-    near = difflib.get_close_matches(key, list(known), n=1, cutoff=0.0)
-    return f"{_key(where, key)} is not known; the nearest known key is {_key(where, near[0])}"
