@@ -1,0 +1,59 @@
+"""The documentation is true: its example is a block, its links lead somewhere."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from posstats.accuracy import check_point_residuals
+from posstats.block_io import read_block
+from posstats.stereo import stereo_models
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+
+
+def _example(folder):
+    text = (DOCS / "block-format.md").read_text(encoding="utf-8")
+    files = dict(re.findall(r"^`(\S+)`\n\n```\w+\n(.*?)```", text, re.MULTILINE | re.DOTALL))
+    for name, content in files.items():
+        (folder / name).write_text(content, encoding="utf-8")
+    return files
+
+
+def test_the_example_of_the_block_format_is_a_block(tmp_path):
+    files = _example(tmp_path)
+    assert set(files) == {
+        "block.toml",
+        "orientations.csv",
+        "tie_points.csv",
+        "ground_points.csv",
+    }
+    block = read_block(tmp_path)
+    assert block.warnings == ()
+    models = stereo_models(block)
+    assert list(models.pairs.n_points) == [6]
+    # made in the grid with 0.2 px of noise: q has 0.2 * sqrt(2) px, the frame adds a little
+    assert np.sqrt(np.mean(models.y_parallax_px() ** 2)) < 1.0
+
+
+def test_the_check_point_of_the_example_is_met(tmp_path):
+    _example(tmp_path)
+    block = read_block(tmp_path)
+    found = check_point_residuals(block, block.orientations, "pos")
+    assert list(found.status) == ["ok"]
+    assert np.all(np.abs(found.difference_m) < 4.0 * found.sigma_m)
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.name)
+def test_links_lead_to_pages_and_headings_that_exist(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if target.startswith("https://"):
+            continue
+        name, _, heading = target.partition("#")
+        linked = page.parent / name if name else page
+        assert linked.exists(), target
+        if heading:
+            titles = re.findall(r"^#+ (.*)$", linked.read_text(encoding="utf-8"), re.MULTILINE)
+            anchors = [re.sub(r"[^\w\- ]", "", t.lower()).replace(" ", "-") for t in titles]
+            assert heading in anchors, target
