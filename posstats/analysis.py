@@ -1,0 +1,291 @@
+"""The chain from a block to its results: the only place that knows the order of the steps."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.accuracy import CheckPointResiduals, check_point_residuals
+from posstats.angle_errors import (
+    AngleErrors,
+    adjusted_errors,
+    coplanarity_errors,
+    in_camera_frame,
+)
+from posstats.block import Block, Orientations
+from posstats.correction import corrected, predicted_errors
+from posstats.errors import PosstatsError
+from posstats.parallax import model_rms_px
+from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
+from posstats.relative_orientation import RelativeOrientation, orient
+from posstats.rotation import ANGLE_NAMES
+from posstats.selection import Decision, RuleSet, decide, load_rules
+from posstats.stereo import StereoModels, stereo_models
+from posstats.validation import OutOfSampleParallax, out_of_sample_parallax
+
+_Floats = NDArray[np.float64]
+Scope = Literal["block", "strip"]
+ErrorSource = Literal["coplanarity", "adjusted"]
+FrameChoice = Literal["ground", "camera", "auto"]
+Progress = Callable[[str, float], object]
+
+FIXED: tuple[Literal["angles", "omega", "phi", "kappa"], ...] = ("angles", "omega", "phi", "kappa")
+"""Right-image angles that the fixed-element method holds at their POS values (Figure 1)."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a user chooses; each value as on the command line.
+
+    Attributes
+    ----------
+    rules
+        ``paper``, ``strict`` or the path of a TOML file.
+    scope
+        Correct by one function of time for the block, or by one for every strip.
+    errors
+        Where angle errors come from: tie points, or the block's adjusted orientation.
+    frame
+        Frame of the regression; ``auto`` takes the one with less parallax out of sample.
+    robust
+        Resist blunders in the tie points.
+    """
+
+    rules: str | Path = "paper"
+    scope: Scope = "block"
+    errors: ErrorSource = "coplanarity"
+    frame: FrameChoice = "ground"
+    robust: bool = True
+
+    def __post_init__(self) -> None:
+        for name, allowed in (("scope", Scope), ("errors", ErrorSource), ("frame", FrameChoice)):
+            value = getattr(self, name)
+            if value not in get_args(allowed):
+                choices = ", ".join(get_args(allowed))
+                raise PosstatsError(f"setting {name} is {value!r}: choose one of {choices}")
+
+
+@dataclass(frozen=True, eq=False)
+class FrameAnalysis:
+    """Angle errors in one frame, their regression, and what is decided of it.
+
+    Attributes
+    ----------
+    out_of_sample
+        Parallax on unseen images with the decided corrections; None unless frames are compared.
+    """
+
+    errors: AngleErrors
+    regressions: tuple[AngleRegression, ...]
+    decisions: tuple[Decision, ...]
+    out_of_sample: OutOfSampleParallax | None = None
+
+    @property
+    def frame(self) -> str:
+        """``ground`` or ``camera``."""
+        return self.errors.frame
+
+    def correct(self, orientations: Orientations, decisions: tuple[Decision, ...]) -> Orientations:
+        """The orientations without the errors that the decisions take off."""
+        predicted = predicted_errors(
+            self.regressions, decisions, orientations.time_s, orientations.strip
+        )
+        return corrected(orientations, predicted, self.frame)
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """Everything that was found out about a block.
+
+    Attributes
+    ----------
+    raw_px
+        (p,) RMS y-parallax of the models from POS.
+    independent, dependent
+        Relative orientation of all models.
+    fixed
+        Relative orientation with POS angles of the right image held, by `FIXED`.
+    frames
+        The ground frame, and the camera frame if it was asked for.
+    chosen
+        The one of `frames` whose corrections were selected.
+    frame_reason
+        Why that one, when it was chosen automatically.
+    corrected_orientations, corrected_px
+        By "omega", "phi", "kappa" (the line of each angle alone, ground frame) and "selected":
+        orientations, and (p,) RMS y-parallax of the models.
+    check_points
+        Residuals of "pos", of every correction, and of "adjusted" if the block has it.
+    """
+
+    block: Block
+    settings: Settings
+    models: StereoModels
+    raw_px: _Floats
+    independent: RelativeOrientation
+    dependent: RelativeOrientation
+    fixed: dict[str, RelativeOrientation]
+    frames: tuple[FrameAnalysis, ...]
+    chosen: FrameAnalysis
+    frame_reason: str | None
+    corrected_orientations: dict[str, Orientations]
+    corrected_px: dict[str, _Floats]
+    check_points: tuple[CheckPointResiduals, ...]
+
+
+def analyse(
+    block: Block, settings: Settings | None = None, *, progress: Progress | None = None
+) -> Analysis:
+    """Analyse a block: parallax, cause, regression, decision, correction, check points.
+
+    Parameters
+    ----------
+    block
+        From `read_block` or `posstats.synthetic.simulate`.
+    settings
+        Default: the paper's rules on the block, coplanarity errors, ground frame, robust.
+    progress
+        Called as progress(step, share done 0..1).
+
+    Raises
+    ------
+    PosstatsError
+        If there is no stereo model, the rules cannot be read, or the adjustment fails.
+    """
+    settings = settings or Settings()
+    report = progress or _no_progress
+    rules = load_rules(settings.rules)
+    report("forming stereo models", 0.0)
+    models = stereo_models(block)
+    if len(models) == 0:
+        raise PosstatsError(
+            "no two consecutive images of a strip have common tie points: there is no stereo model"
+        )
+    report("relative orientation", 0.05)
+    robust = settings.robust
+    independent = orient(models, "independent", robust=robust)
+    dependent = orient(models, "dependent", robust=robust)
+    fixed = {name: orient(models, name, robust=robust) for name in FIXED}
+    errors = _angle_errors(block, models, settings, report)
+    report("regression", 0.8)
+    frames = _frames(models, errors, rules, settings)
+    chosen, frame_reason = _chosen_frame(frames)
+    report("correction", 0.9)
+    orientations = _corrected_orientations(block.orientations, frames[0], chosen, settings.scope)
+    report("check points", 0.95)
+    return Analysis(
+        block=block,
+        settings=settings,
+        models=models,
+        raw_px=model_rms_px(models),
+        independent=independent,
+        dependent=dependent,
+        fixed=fixed,
+        frames=frames,
+        chosen=chosen,
+        frame_reason=frame_reason,
+        corrected_orientations=orientations,
+        corrected_px={
+            name: model_rms_px(models.with_orientations(each))
+            for name, each in orientations.items()
+        },
+        check_points=_check_points(block, orientations),
+    )
+
+
+def _no_progress(_step: str, _done: float) -> None:
+    pass
+
+
+def _angle_errors(
+    block: Block, models: StereoModels, settings: Settings, report: Progress
+) -> AngleErrors:
+    if settings.errors == "adjusted":
+        return adjusted_errors(block)
+
+    def advance(done: int, total: int) -> None:
+        report("coplanarity adjustment", 0.1 + 0.7 * done / total)
+
+    return coplanarity_errors(block, models, robust=settings.robust, progress=advance)
+
+
+def _frames(
+    models: StereoModels, errors: AngleErrors, rules: RuleSet, settings: Settings
+) -> tuple[FrameAnalysis, ...]:
+    """The ground frame always, the camera frame if the settings ask for it."""
+    wanted = [errors]
+    if settings.frame != "ground":
+        wanted.append(in_camera_frame(errors, models.orientations))
+    return tuple(_frame_analysis(models, each, rules, settings) for each in wanted)
+
+
+def _frame_analysis(
+    models: StereoModels, errors: AngleErrors, rules: RuleSet, settings: Settings
+) -> FrameAnalysis:
+    regressions = regress(errors)
+
+    def out_of_sample(judged: Sequence[Decision]) -> OutOfSampleParallax:
+        return out_of_sample_parallax(models, errors, judged)
+
+    decisions = decide(regressions, rules, scope=settings.scope, out_of_sample=out_of_sample)
+    compared = None
+    if settings.frame == "auto":
+        compared = out_of_sample(tuple(_with_some_form(decision) for decision in decisions))
+    return FrameAnalysis(errors, regressions, decisions, compared)
+
+
+def _with_some_form(decision: Decision) -> Decision:
+    """The decision, or a constant where nothing is corrected: frames differ in constants too."""
+    return decision if decision.correct else replace(decision, correct=True, form="constant")
+
+
+def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, str | None]:
+    """The camera frame if it was asked for, or leaves less parallax out of sample."""
+    ground = frames[0]
+    compared = [frame.out_of_sample for frame in frames if frame.out_of_sample is not None]
+    if not compared:
+        return frames[-1], None
+    left_px = [each.corrected_px for each in compared]
+    if not np.isfinite(left_px).all():
+        return ground, "the frames cannot be compared out of sample: the ground frame is kept"
+    chosen = frames[int(np.argmin(left_px))]
+    return chosen, (
+        f"fitted in the {chosen.frame} frame, the angle errors leave less parallax on images that "
+        f"took no part in the fit ({compared[0].method})"
+    )
+
+
+def _corrected_orientations(
+    pos: Orientations, ground: FrameAnalysis, chosen: FrameAnalysis, scope: Scope
+) -> dict[str, Orientations]:
+    """Each ground angle alone by its line, whatever was decided (Figure 3), and the selection."""
+    alone = {
+        angle: ground.correct(pos, _line_of(angle, ground.regressions, scope))
+        for angle in ANGLE_NAMES
+    }
+    return alone | {"selected": chosen.correct(pos, chosen.decisions)}
+
+
+def _line_of(
+    angle: str, regressions: tuple[AngleRegression, ...], scope: Scope
+) -> tuple[Decision, ...]:
+    """Take off the paper's line of one angle, wherever there is one."""
+    return tuple(
+        Decision(angle, each.frame, each.scope, True, "linear", "ols", "alone", "")
+        for each in regressions
+        if each.angle == angle
+        and (each.scope == BLOCK_SCOPE) == (scope == "block")
+        and each.ols is not None
+    )
+
+
+def _check_points(
+    block: Block, orientations: dict[str, Orientations]
+) -> tuple[CheckPointResiduals, ...]:
+    sources = {"pos": block.orientations} | orientations
+    if block.adjusted is not None:
+        sources["adjusted"] = block.adjusted
+    return tuple(check_point_residuals(block, each, name) for name, each in sources.items())

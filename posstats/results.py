@@ -1,0 +1,190 @@
+"""Analysis -> results.json: plain values, described in ``docs/results.md``.
+
+Lengths in metres unless the name says mm or px, angles in radians, rates in rad/s. What is not
+available or cannot be tested is null.
+"""
+
+import json
+import platform
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from posstats import __version__
+from posstats.analysis import Analysis
+from posstats.parallax import block_statistics
+from posstats.relative_orientation import RelativeOrientation
+from posstats.result_rows import (
+    accuracy_row,
+    angle_error_rows,
+    angle_error_summary_rows,
+    corrected_parallax_rows,
+    error_source_rows,
+    frame_rows,
+    image_rows,
+    model_rows,
+    parallax_rows,
+    regression_row,
+    residual_rows,
+    selection_rows,
+)
+
+Row = dict[str, Any]
+
+SCHEMA = "posstats-results/1"
+_PACKAGES = ("numpy", "scipy", "pandas", "statsmodels", "numba", "pyproj")
+
+
+def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]:
+    """The results of an analysis as a dictionary of plain values.
+
+    Parameters
+    ----------
+    created
+        ISO 8601 time stamp to put in; no clock is read here.
+    """
+    values: dict[str, Any] = _plain(
+        {
+            "schema": SCHEMA,
+            "posstats_version": __version__,
+            "created": created,
+            "versions": {"python": platform.python_version()}
+            | {name: version(name) for name in _PACKAGES},
+            "block": _block(analysis),
+            "settings": _settings(analysis),
+            "units": {"mm": bool(np.isfinite(analysis.models.pixel_size_mm).all())},
+            "verdict": _verdict(analysis),
+            "expected_noise_px": _expected_noise_px(analysis),
+            "images": image_rows(analysis),
+            "parallax": parallax_rows(analysis),
+            "models": model_rows(analysis),
+            "error_sources": error_source_rows(analysis),
+            "angle_errors": angle_error_rows(analysis.frames[0]),
+            "angle_error_summary": [
+                row for frame in analysis.frames for row in angle_error_summary_rows(frame)
+            ],
+            "regression": [
+                regression_row(each) for frame in analysis.frames for each in frame.regressions
+            ],
+            "frames": frame_rows(analysis),
+            "selection": selection_rows(analysis.chosen),
+            "corrected_parallax": corrected_parallax_rows(analysis),
+            "check_points": [
+                accuracy_row(residuals, translation_removed=removed)
+                for residuals in analysis.check_points
+                for removed in (False, True)
+            ],
+            "check_point_residuals": [
+                row for residuals in analysis.check_points for row in residual_rows(residuals)
+            ],
+            "observability": [
+                {
+                    "scope": each.scope,
+                    "unobservable": each.unobservable,
+                    "images": each.images,
+                }
+                for each in analysis.frames[0].errors.observability
+            ],
+            "warnings": [*analysis.block.warnings, *analysis.frames[0].errors.warnings],
+        }
+    )
+    return values
+
+
+def to_json(values: dict[str, Any]) -> str:
+    """The text of results.json."""
+    return json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """Numbers, text, lists and dictionaries only; NaN and infinity become None."""
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def _block(analysis: Analysis) -> Row:
+    block = analysis.block
+    n_checks = 0 if block.ground_points is None else int(block.ground_points.is_check.sum())
+    return {
+        "name": block.name,
+        "n_images": len(block.orientations),
+        "n_strips": len(block.orientations.strips),
+        "n_models": len(analysis.models),
+        "n_tie_points": int((~block.check_points).sum()),
+        "n_check_points": n_checks,
+        "simulated": block.simulated,
+        "crs": block.frame.crs,
+        "angles": block.orientations.system,
+        "inputs": [{"file": name, "sha256": digest} for name, digest in block.inputs],
+    }
+
+
+def _settings(analysis: Analysis) -> Row:
+    settings = analysis.settings
+    return {
+        "rules": str(settings.rules),
+        "scope": settings.scope,
+        "errors": settings.errors,
+        "frame": analysis.chosen.frame,
+        "frame_setting": settings.frame,
+        "frame_reason": analysis.frame_reason,
+        "robust": settings.robust,
+        "position_m": analysis.block.accuracy.position_m,
+        "angle_rad": analysis.block.accuracy.angle_rad,
+        "image_px": analysis.block.accuracy.image_px,
+    }
+
+
+def _verdict(analysis: Analysis) -> Row:
+    levels = {
+        "raw": analysis.raw_px,
+        "relative": analysis.independent.y_parallax_rms_px,
+        "corrected": analysis.corrected_px["selected"],
+    }
+    row: Row = {}
+    for name, rms_px in levels.items():
+        mean = block_statistics(analysis.models, rms_px)
+        row |= {f"{name}_px": mean.mean_px, f"{name}_mm": mean.mean_mm}
+        row[f"{name}_median_px"] = float(np.median(rms_px[np.isfinite(rms_px)]))
+    row |= _cause(analysis)
+    row["corrected_angles"] = list(
+        dict.fromkeys(each.angle for each in analysis.chosen.decisions if each.correct)
+    )
+    return row
+
+
+def _cause(analysis: Analysis) -> Row:
+    """The angle that keeps the parallax when it is held, and its share of what angles cause.
+
+    An angle is named when holding it alone keeps more than half of what holding all three
+    keeps, and that is more than relative orientation leaves anyway.
+    """
+    least = _mean_px(analysis.dependent)
+    kept = {name: _mean_px(each) - least for name, each in analysis.fixed.items()}
+    total = kept.pop("angles")
+    worst = max(kept, key=lambda angle: kept[angle])
+    named = total > least and kept[worst] > 0.5 * total
+    return {
+        "cause": worst if named else None,
+        "cause_share": kept[worst] / total if named else None,
+    }
+
+
+def _mean_px(orientation: RelativeOrientation) -> float:
+    rms_px = orientation.y_parallax_rms_px
+    return float(rms_px[np.isfinite(rms_px)].mean())
+
+
+def _expected_noise_px(analysis: Analysis) -> float:
+    """RMS y-parallax that the stated image accuracy alone leaves: both images' y count."""
+    return float(np.sqrt(2.0)) * analysis.block.accuracy.image_px

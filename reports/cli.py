@@ -1,0 +1,166 @@
+"""The `posstats` command."""
+
+import signal
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from types import FrameType
+from typing import Any, Literal
+
+import click
+
+from posstats import __version__
+from posstats.errors import PosstatsError
+
+FOLDER = click.Path(path_type=Path)
+
+
+def _clear_errors(command: Callable[..., None]) -> Callable[..., None]:
+    """Turn the package's errors and the system's into one message and exit code 1."""
+
+    @wraps(command)
+    def run(*args: Any, **kwargs: Any) -> None:
+        try:
+            command(*args, **kwargs)
+        except PosstatsError as error:
+            raise click.ClickException(str(error)) from error
+        except OSError as error:
+            where = f": {error.filename}" if error.filename else ""
+            raise click.ClickException(f"{error.strerror or error}{where}") from error
+        except MemoryError as error:
+            raise click.ClickException("not enough memory for this block") from error
+
+    return run
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="posstats")
+def cli() -> None:
+    r"""Measure, explain and correct the errors of GNSS/INS orientations of aerial photographs.
+
+    \b
+    Example:
+      posstats simulate --scenario area1-small.toml --out block
+      posstats check block
+      posstats analyse block --out report
+    """
+
+
+@cli.command()
+@click.argument("block", type=FOLDER)
+@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@click.option(
+    "--rules",
+    default="paper",
+    show_default=True,
+    metavar="paper|strict|FILE",
+    help="Which angles to correct: the paper's rule, the strict rule, or a TOML file.",
+)
+@click.option(
+    "--scope",
+    type=click.Choice(["block", "strip"]),
+    default="block",
+    show_default=True,
+    help="One regression line for the block, or one per strip.",
+)
+@click.option(
+    "--errors",
+    type=click.Choice(["coplanarity", "adjusted"]),
+    default="coplanarity",
+    show_default=True,
+    help="Angle errors from the tie points, or against adjusted.csv.",
+)
+@click.option(
+    "--frame",
+    type=click.Choice(["ground", "camera", "auto"]),
+    default="ground",
+    show_default=True,
+    help="Frame of the regression; auto takes the one that fits better out of sample.",
+)
+@click.option(
+    "--robust/--no-robust",
+    default=True,
+    show_default=True,
+    help="Resist blunders in the tie points, or plain least squares.",
+)
+@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@_clear_errors
+def analyse(
+    block: Path,
+    out: Path | None,
+    rules: str,
+    scope: Literal["block", "strip"],
+    errors: Literal["coplanarity", "adjusted"],
+    frame: Literal["ground", "camera", "auto"],
+    robust: bool,
+    no_pdf: bool,
+) -> None:
+    r"""Analyse the block folder BLOCK and write its report.
+
+    Writes results.json, corrected_orientations.csv, tables/*.csv, figures/*.svg, report.html
+    and report.pdf. Files of the same names are replaced.
+
+    \b
+    Example:
+      posstats analyse flight7 --out flight7/report --rules strict --frame auto
+    """
+    from posstats.analysis import Settings
+    from posstats.reports.commands import analyse_block
+
+    settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
+    for line in analyse_block(block, out or _default_out(block), settings, pdf=not no_pdf):
+        click.echo(line)
+
+
+@cli.command()
+@click.option(
+    "--scenario", type=FOLDER, required=True, help="Scenario file (TOML); see docs/simulation.md."
+)
+@click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
+@click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
+@_clear_errors
+def simulate(scenario: Path, out: Path, seed: int | None) -> None:
+    r"""Simulate a block of known truth, as a block folder.
+
+    \b
+    Example:
+      posstats simulate --scenario area1-small.toml --out block --seed 7
+    """
+    from posstats.reports.commands import simulate_block
+
+    for line in simulate_block(scenario, out, seed):
+        click.echo(line)
+
+
+@cli.command()
+@click.argument("block", type=FOLDER)
+@_clear_errors
+def check(block: Path) -> None:
+    r"""Validate the block folder BLOCK and print a summary.
+
+    Exit code 1 with the findings if the block is refused.
+
+    \b
+    Example:
+      posstats check flight7
+    """
+    from posstats.reports.commands import check_block
+
+    for line in check_block(block):
+        click.echo(line)
+
+
+def _default_out(block: Path) -> Path:
+    return Path("out") / block.resolve().name
+
+
+def _terminate(_signal: int, _frame: FrameType | None) -> None:
+    """Leave by an exception, so that temporary output is removed."""
+    sys.exit(143)
+
+
+def main() -> None:
+    """Entry point of the `posstats` command."""
+    signal.signal(signal.SIGTERM, _terminate)
+    cli()
