@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_block import block, scene
+from strip_scene import block, scene
 
 from posstats.accuracy import (
     CheckPointResiduals,

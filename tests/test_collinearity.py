@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_block import CAMERA, measurements, projected, scene
+from strip_scene import CAMERA, measurements, projected, scene
 
 from posstats.collinearity import project, project_derivatives
 from posstats.rotation import rotation_derivatives

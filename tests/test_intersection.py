@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import shared_path
 from scipy.optimize import least_squares
-from small_block import CAMERA, measurements, orientations, projected, scene
+from strip_scene import CAMERA, measurements, orientations, projected, scene
 
+from posstats.block_io import read_block
 from posstats.intersection import intersect
 from posstats.rotation import angles_from_rotation
 
@@ -226,3 +228,40 @@ def test_no_points_and_no_measurements_give_an_empty_result():
     assert nothing.covariance_m2.shape == (0, 3, 3)
     unmeasured = intersect(rays.subset(np.zeros(len(rays), bool)), oriented, CAMERAS)
     assert set(unmeasured.status) == {"fewer than two rays"}
+
+
+def test_adjusted_orientations_of_a_real_block_leave_the_measuring_noise():
+    # the block's own vertical parallax is 0.21 px; its POS is off by a quarter of a degree
+    real = read_block(shared_path("data", "ign-fd1305"))
+    found = intersect(real.tie_points, real.adjusted, real.cameras)
+    once = np.bincount(real.tie_points.point) < 2
+    np.testing.assert_array_equal(found.is_ok, ~once)
+    assert np.nanmedian(found.rms_px) < 0.2
+    assert np.nanmax(found.rms_px) < 1.0
+    from_pos = intersect(real.tie_points, real.orientations, real.cameras)
+    assert np.nanmedian(from_pos.rms_px) > 3.0
+
+
+def test_rays_of_a_coarse_pos_that_diverge_are_said_to():
+    # drone, attitude off by degrees, bases of 14 m: some triple rays meet above the camera
+    real = read_block(shared_path("data", "seneca"))
+    found = intersect(real.tie_points, real.orientations, real.cameras)
+    assert set(found.status) == {"ok", "behind the camera"}
+    behind = np.count_nonzero(~found.is_ok)
+    assert 0 < behind < 0.001 * len(found)
+    assert set(intersect(real.tie_points, real.adjusted, real.cameras).status) == {"ok"}
+
+
+def test_images_of_different_cameras_meet():
+    # the wide camera sees every second image: its coordinates and distance are half as large
+    oriented, ground = scene(12)
+    wide = replace(CAMERA, id="wide", principal_distance_px=0.5 * CAMERA.principal_distance_px)
+    camera = np.arange(len(oriented)) % 2
+    rays = measurements(oriented, ground)
+    scale = np.where(camera[rays.image] == 1, 0.5, 1.0)[:, None]
+    mixed = replace(rays, xy_px=rays.xy_px * scale)
+    found = intersect(mixed, replace(oriented, camera=camera), (CAMERA, wide))
+    np.testing.assert_allclose(found.position_m, ground, rtol=0, atol=1e-9)
+    assert found.rms_px.max() < 1e-9
+    alike = intersect(rays, oriented, CAMERAS)
+    assert np.all(found.covariance_m2[:, 2, 2] > alike.covariance_m2[:, 2, 2])

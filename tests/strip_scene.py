@@ -1,4 +1,4 @@
-"""Small blocks of known truth, projected with numpy alone: the oracle of the kernel tests."""
+"""A strip of known truth, projected with numpy alone: the oracle of the kernel tests."""
 
 import numpy as np
 
