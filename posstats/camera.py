@@ -53,7 +53,8 @@ class Distortion:
             return uv
         ideal = uv.copy()
         for _ in range(_INVERSION_STEPS):
-            step = uv - self.distorted(ideal)
+            with np.errstate(over="ignore", invalid="ignore"):  # divergence is caught below
+                step = uv - self.distorted(ideal)
             ideal += step
             if not np.all(np.isfinite(step)):
                 break

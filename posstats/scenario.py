@@ -106,7 +106,7 @@ class CameraSpec(Table):
         """Sentences on values that contradict each other."""
         if (self.principal_distance_mm is None) == (self.principal_distance_px is None):
             yield "needs either principal_distance_mm or principal_distance_px"
-        if self.principal_distance_mm is not None and self.pixel_size_mm is None:
+        elif self.principal_distance_mm is not None and self.pixel_size_mm is None:
             yield "principal_distance_mm needs pixel_size_mm"
 
     @property
