@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from posstats.block import Block
 from posstats.block_toml import BlockSettings, parse_settings
 from posstats.block_warnings import block_warnings, settings_warnings, time_warnings
+from posstats.block_writing import write_block, write_orientations
 from posstats.convention import Convention
 from posstats.errors import BlockFormatError, GeometryError
 from posstats.frames import GroundFrame
@@ -30,7 +31,7 @@ from posstats.toml_section import FILE
 
 _Floats = NDArray[np.float64]
 
-__all__ = ["read_block"]
+__all__ = ["read_block", "write_block", "write_orientations"]
 
 TABLES = ("orientations", "tie_points", "ground_points", "adjusted")
 _REQUIRED = TABLES[:2]

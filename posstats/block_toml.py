@@ -11,7 +11,6 @@ from posstats.block import Accuracy
 from posstats.camera import Camera, Distortion, DistortionModel
 from posstats.errors import GeometryError
 from posstats.frames import require_map_grid
-from posstats.rotation import AngleSystem
 from posstats.toml_section import FILE, TomlSection, line_of_section, nearest
 
 FileAngleSystem = Literal["omega-phi-kappa", "phi-omega-kappa", "roll-pitch-heading"]
@@ -35,7 +34,7 @@ _KEYS = {
     "pos": ("lever_arm_m", "boresight_deg", "mounting_deg"),
     "accuracy": ("position_m", "angle_deg", "image_px"),
 }  # fmt: skip
-_DISTORTION_KEYS = {
+DISTORTION_COEFFICIENTS: dict[DistortionModel, tuple[str, ...]] = {
     "none": (),
     "radial": ("k1", "k2"),
     "brown": ("k1", "k2", "k3", "p1", "p2"),
@@ -65,11 +64,6 @@ class BlockSettings:
     raw: Mapping[str, Any]
 
     @property
-    def system(self) -> AngleSystem:
-        """The angle system of the computation."""
-        return "phi-omega-kappa" if self.angles == "phi-omega-kappa" else "omega-phi-kappa"
-
-    @property
     def angle_columns(self) -> tuple[str, str, str]:
         """Names of the angle columns, in the order in which angles are kept."""
         if self.angles == "roll-pitch-heading":
@@ -87,6 +81,13 @@ def parse_settings(content: bytes, folder_name: str, findings: list[str]) -> Blo
     except tomllib.TOMLDecodeError as error:
         findings.append(f"{FILE}: found no valid TOML: {error}")
         return None
+    return settings_from(raw, folder_name, findings, text)
+
+
+def settings_from(
+    raw: Mapping[str, Any], folder_name: str, findings: list[str], text: str = ""
+) -> BlockSettings | None:
+    """The settings in parsed TOML; `text` is where lines are looked up for findings."""
     before = len(findings)
     _refuse_unknown(raw, text, findings)
     settings = _settings(raw, text, folder_name, findings)
@@ -242,10 +243,10 @@ def _distortion(camera: TomlSection) -> Distortion:
     section = TomlSection(
         table, "camera", camera.source, camera.findings, camera.occurrence, "distortion"
     )
-    model = section.choice("model", tuple(_DISTORTION_KEYS))
-    section.refuse_unknown(("model", *_DISTORTION_KEYS[model]))
-    values = {key: section.number(key) or 0.0 for key in _DISTORTION_KEYS[model]}
-    return Distortion(cast(DistortionModel, model), **values)
+    model = cast(DistortionModel, section.choice("model", tuple(DISTORTION_COEFFICIENTS)))
+    coefficients = DISTORTION_COEFFICIENTS[model]
+    section.refuse_unknown(("model", *coefficients))
+    return Distortion(model, **{name: section.number(name) or 0.0 for name in coefficients})
 
 
 def _accuracy(section: TomlSection) -> tuple[Accuracy, tuple[str, ...]]:

@@ -121,7 +121,8 @@ class Convention:
     def projection_centre(self, position_crs: _Floats, ground_from_image: _Floats) -> _Floats:
         """Projection centres (n, 3) in the computing frame: X_S = X - R lever."""
         offset = ground_from_image @ np.array(self.lever_arm_m)
-        return self.frame.to_computing(position_crs) - offset
+        centre: _Floats = self.frame.to_computing(position_crs) - offset
+        return centre
 
     def sigma_angles_rad(self, file_sigmas: _Floats, file_angles: _Floats) -> _Floats:
         """Standard deviations (n, 3) of omega, phi, kappa from those of the file's angles.

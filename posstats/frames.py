@@ -84,8 +84,9 @@ class GroundFrame:
         if self.geoid is not None:
             _, _, height = _geoid_shift(self.geoid).transform(longitude, latitude, height)
         geocentric = self._geocentric(longitude, latitude, height)
-        offset = geocentric - self._geocentric(*self._origin, 0.0)
-        return _finite_or_nan(offset @ self._geocentric_from_computing)
+        offset = _finite_or_nan(geocentric) - self._geocentric(*self._origin, 0.0)
+        computing: _Floats = offset @ self._geocentric_from_computing
+        return computing
 
     def to_crs(self, position: ArrayLike) -> _Floats:
         """Positions (n, 3) x, y, z in the crs from the computing frame; inverse of the above."""
@@ -148,7 +149,9 @@ class GroundFrame:
         return np.asarray(longitude), np.asarray(latitude)
 
     def _convergence(self, longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> _Floats:
-        factors = _projection(self._crs).get_factors(longitude_deg, latitude_deg)
+        # PROJ's factors, unlike its projections, count longitude from the crs's own meridian.
+        longitude = np.asarray(longitude_deg) - _prime_meridian_deg(self._crs)
+        factors = _projection(self._crs).get_factors(longitude, latitude_deg)
         return np.asarray(np.radians(factors.meridian_convergence), dtype=float)
 
     def _geocentric(
@@ -195,6 +198,17 @@ def require_map_grid(crs: str) -> None:
 @lru_cache(maxsize=32)
 def _projection(crs: str) -> Proj:
     return Proj(CRS.from_user_input(crs))
+
+
+@lru_cache(maxsize=32)
+def _prime_meridian_deg(crs: str) -> float:
+    """Longitude of the crs's prime meridian from Greenwich."""
+    meridian = CRS.from_user_input(crs).prime_meridian
+    return (
+        0.0
+        if meridian is None
+        else np.degrees(meridian.longitude * meridian.unit_conversion_factor)
+    )
 
 
 @lru_cache(maxsize=32)

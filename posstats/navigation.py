@@ -78,4 +78,5 @@ def navigation_rotation_vectors(angles_rad: ArrayLike, mounting_rad: float = 0.0
 
 
 def _body_from_camera(mounting_rad: float) -> _Floats:
-    return axis_rotation(2, np.asarray(mounting_rad)) @ _SWAP
+    rotation: _Floats = axis_rotation(2, np.asarray(mounting_rad)) @ _SWAP
+    return rotation
