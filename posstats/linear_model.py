@@ -106,18 +106,24 @@ def generalised_least_squares(
     components = variance_components(y, design, known, strips)
     white, strip = (float(variance) for variance in components.variance)
     factors = [np.eye(len(y))] + ([] if strips is None else [strips])
-    root = np.linalg.cholesky(known + white * factors[0] + _gram(strip, strips))
+    shapes = [factor @ factor.T for factor in factors]
+    total = known + sum(v * g for v, g in zip(components.variance, shapes, strict=False))
+    root = np.linalg.cholesky(total)
     whitened = solve_triangular(root, design, lower=True)
     fit = sm.OLS(solve_triangular(root, y, lower=True), whitened).fit(method="qr")
     covariance = fit.normalized_cov_params
-    # Column j of `gain` makes coefficient j of y; its variance changes by |factor' gain|^2.
-    gain = solve_triangular(root, whitened @ covariance, lower=True, trans="T")
-    change = np.array([np.sum((factor.T @ gain) ** 2, axis=0) for factor in factors])
     spread = components.covariance[: len(factors), : len(factors)]
+    # Column j of `gain` = V^-1 X Phi makes coefficient j of y.
+    gain = solve_triangular(root, whitened @ covariance, lower=True, trans="T")
+    pulled = [shape @ gain for shape in shapes]
+    change = np.array([gain.T @ column for column in pulled])
+    variance_change = np.array([np.diag(c) for c in change])
     return LinearFit(
         coefficients=fit.params,
-        covariance=covariance,
-        df=_satterthwaite(np.diag(covariance), np.einsum("ij,ik,kj->j", change, spread, change)),
+        covariance=covariance + 2.0 * _weight_uncertainty(root, pulled, change, covariance, spread),
+        df=_satterthwaite(
+            np.diag(covariance), np.einsum("ij,ik,kj->j", variance_change, spread, variance_change)
+        ),
         residuals=y - design @ fit.params,
         weighted_ss=float(fit.ssr),
         white_noise_variance=white,
@@ -125,8 +131,31 @@ def generalised_least_squares(
     )
 
 
-def _gram(variance: float, factor: _Floats | None) -> _Floats | float:
-    return 0.0 if factor is None else variance * (factor @ factor.T)
+def _weight_uncertainty(
+    root: _Floats,
+    pulled: list[_Floats],
+    change: _Floats,
+    covariance: _Floats,
+    spread: _Floats,
+) -> _Floats:
+    """Kenward and Roger's Lambda (1997, eq. 5): what not knowing the weights costs.
+
+    With `pulled` G_i V^-1 X Phi and `change` Phi X' V^-1 G_i V^-1 X Phi for the components i,
+    and `spread` the sampling covariance of their variances.
+    """
+    precision = np.linalg.inv(covariance)
+    turned = [solve_triangular(root, column, lower=True) for column in pulled]
+    pairs = np.array(
+        [
+            [
+                turned[i].T @ turned[j] - change[i] @ precision @ change[j]
+                for j in range(len(pulled))
+            ]
+            for i in range(len(pulled))
+        ]
+    )
+    cost: _Floats = np.einsum("ij,ijkl->kl", spread, pairs)
+    return cost
 
 
 def _satterthwaite(variance: _Floats, spread: _Floats) -> _Floats:

@@ -15,8 +15,16 @@ _Floats = NDArray[np.float64]
 
 MAX_ITERATIONS = 100
 MAX_HALVINGS = 30
-SAME_LIKELIHOOD = 1e-6
-"""Log-likelihoods this close are the same to any test; the simpler model is then taken."""
+CONVERGED = 1e-10
+"""Gain of log-likelihood at which the scoring stops."""
+WORTHWHILE = 0.03
+"""Log-likelihood that a component must add to count as present.
+
+A variance held at or above zero makes intervals too wide where the component is really absent,
+and dropping it too easily makes them too narrow where it is small. For a slope that rests on
+strip means (3 degrees of freedom), 95 % intervals cover, at worst, over all sizes of the strip
+effect: 94.1-97.0 % for 0, 93.1-96.5 % for 0.03, 92.6-96.4 % for 0.06.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +79,12 @@ def variance_components(
         (n, S) matrix Z of zeros and ones, or None for white noise only.
     """
     contrasts = _error_contrasts(y, design, known, strips)
-    free = np.array([True, strips is not None])
-    best = np.zeros(2)
-    best_value = _likelihood(contrasts, best).value
-    for start in _starts(contrasts, free):
-        found, value = _maximised(contrasts, start, free)
-        if value > best_value + SAME_LIKELIHOOD:
+    best, best_value = np.zeros(2), _likelihood(contrasts, np.zeros(2)).value
+    for start in _starts(contrasts, with_strips=strips is not None):
+        found, value = _maximised(contrasts, start)
+        value -= WORTHWHILE * np.count_nonzero(found)
+        if value > best_value:
             best, best_value = found, value
-    best = _without_idle_components(contrasts, best, best_value)
     return VarianceComponents(best, _sampling_covariance(contrasts, best))
 
 
@@ -122,60 +128,58 @@ def _likelihood(contrasts: _Contrasts, variance: _Floats) -> _Likelihood:
     )
 
 
-def _starts(contrasts: _Contrasts, free: NDArray[np.bool_]) -> list[_Floats]:
-    """No component; each alone; both. Sizes are robust, as one strip may be far off."""
+def _starts(contrasts: _Contrasts, *, with_strips: bool) -> list[_Floats]:
+    """White noise alone; strip effect alone; both. Sizes by robust moments."""
     square = contrasts.y**2
-    size = np.array([float(np.median(square)) or float(np.mean(square)), 0.0])
-    if free[1]:
-        strip_sums = contrasts.strips.T @ contrasts.y
-        size[1] = np.mean(strip_sums**2) / np.sum(contrasts.strips**2, axis=0).mean() ** 2
-    faces = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
-    return [face * size for face in faces if free[1] or face[1] == 0.0]
+    white = float(np.median(square)) or float(np.mean(square))
+    if not with_strips:
+        return [np.array([white, 0.0])]
+    strip_sums = contrasts.strips.T @ contrasts.y
+    strip = float(np.mean(strip_sums**2) / np.sum(contrasts.strips**2, axis=0).mean() ** 2)
+    return [np.array(start) for start in ((white, 0.0), (0.0, strip), (white / 2, strip / 2))]
 
 
-def _maximised(
-    contrasts: _Contrasts, start: _Floats, free: NDArray[np.bool_]
-) -> tuple[_Floats, float]:
-    """Fisher scoring with step halving; a variance at zero is held while its score is negative."""
-    variance, state = start, _likelihood(contrasts, start)
+def _maximised(contrasts: _Contrasts, start: _Floats) -> tuple[_Floats, float]:
+    """Fisher scoring with step halving, over the components that the start has.
+
+    A variance at zero is held there while its score is negative.
+    """
+    free, variance, state = start > 0.0, start, _likelihood(contrasts, start)
     for _ in range(MAX_ITERATIONS):
         moving = free & ((variance > 0.0) | (state.score > 0.0))
         if not np.isfinite(state.value) or not moving.any():
             break
         step = np.zeros(2)
         step[moving] = _solved(state.information[np.ix_(moving, moving)], state.score[moving])
-        for _ in range(MAX_HALVINGS):
-            trial = np.maximum(variance + step, 0.0)
-            trial_state = _likelihood(contrasts, trial)
-            if trial_state.value > state.value:
-                break
-            step *= 0.5
-        else:
-            break
+        trial, trial_state = _uphill(contrasts, variance, step, state.value)
         gained = trial_state.value - state.value
-        variance, state = trial, trial_state
-        if gained < 1e-10:
+        if gained > 0.0:
+            variance, state = trial, trial_state
+        if gained < CONVERGED:
             break
     return variance, state.value
 
 
+def _uphill(
+    contrasts: _Contrasts, variance: _Floats, step: _Floats, value: float
+) -> tuple[_Floats, _Likelihood]:
+    """The longest of step, step/2, step/4 ... that raises the likelihood above `value`."""
+    for _ in range(MAX_HALVINGS):
+        trial = np.maximum(variance + step, 0.0)
+        state = _likelihood(contrasts, trial)
+        if state.value > value:
+            break
+        step = 0.5 * step
+    return trial, state
+
+
 def _solved(information: _Floats, right: _Floats) -> _Floats:
     """Solution with unit diagonal; components that look alike share (pseudo-inverse)."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
-    solution: _Floats = scale * (
-        np.linalg.pinv(scale[:, None] * information * scale, rcond=1e-10) @ (scale * right)
+    scale = np.diag(1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300)))
+    solution: _Floats = (
+        scale @ np.linalg.pinv(scale @ information @ scale, rcond=1e-10) @ scale @ right
     )
     return solution
-
-
-def _without_idle_components(contrasts: _Contrasts, variance: _Floats, value: float) -> _Floats:
-    """Set a component to zero where the likelihood does not notice."""
-    for component in (1, 0):
-        reduced = variance.copy()
-        reduced[component] = 0.0
-        if _likelihood(contrasts, reduced).value >= value - SAME_LIKELIHOOD:
-            variance = reduced
-    return variance
 
 
 def _sampling_covariance(contrasts: _Contrasts, variance: _Floats) -> _Floats:
@@ -183,9 +187,5 @@ def _sampling_covariance(contrasts: _Contrasts, variance: _Floats) -> _Floats:
     covariance = np.zeros((2, 2))
     information = _likelihood(contrasts, variance).information[present]
     if len(information):
-        covariance[present] = _solved_inverse(information)
+        covariance[present] = _solved(information, np.eye(len(information)))
     return covariance
-
-
-def _solved_inverse(information: _Floats) -> _Floats:
-    return np.column_stack([_solved(information, unit) for unit in np.eye(len(information))])
