@@ -40,3 +40,9 @@ def kernel(function: F) -> F:
 def inner_kernel(function: F) -> F:
     """Compile a function for use inside the kernels of the same file."""
     return cast(F, numba.njit(nogil=True, error_model="numpy")(function))
+
+
+def summing_kernel(function: F) -> F:
+    """As `inner_kernel`; sums may be added up in any order, as vector instructions do."""
+    fast = {"reassoc", "contract", "nsz"}
+    return cast(F, numba.njit(nogil=True, error_model="numpy", fastmath=fast)(function))

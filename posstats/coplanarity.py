@@ -19,25 +19,27 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
+from posstats.compiled import inner_kernel, kernel, summing_kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
-_Vector = Any  # three numbers: an array row or a tuple kept in registers
-
-
-@inner_kernel
-def _rotated(matrix: _Floats, vector: _Floats) -> _Vector:
-    return (
-        matrix[0, 0] * vector[0] + matrix[0, 1] * vector[1] + matrix[0, 2] * vector[2],
-        matrix[1, 0] * vector[0] + matrix[1, 1] * vector[1] + matrix[1, 2] * vector[2],
-        matrix[2, 0] * vector[0] + matrix[2, 1] * vector[1] + matrix[2, 2] * vector[2],
-    )
+_Vector = Any  # three numbers: a row of an array, or a tuple, which stays in registers
+_Matrix = Any  # three such rows
 
 
 @inner_kernel
 def _dot(a: _Vector, b: _Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner_kernel
+def _rotated(matrix: _Matrix, vector: _Vector) -> _Vector:
+    return _dot(matrix[0], vector), _dot(matrix[1], vector), _dot(matrix[2], vector)
+
+
+@inner_kernel
+def _cross(a: _Vector, b: _Vector) -> _Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @inner_kernel
@@ -175,6 +177,7 @@ def y_parallax_derivatives(
 CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
 
 _N_STATE = 8
+_LANES = 64  # points worked on at once
 _MAX_ITERATIONS = 100
 _LAST_STEP_PX = 1e-9  # RMS change of q; of the angles about 1e-13 rad
 _ROUNDING, _ROUNDING_PX2 = 1e-10, 1e-10**2  # to which a sum of squares, and q^2, are known
@@ -190,14 +193,45 @@ _WEIGHT_CHANGE = 1e-3
 
 
 class _Pair(NamedTuple):
-    """The point pairs of two images and what stays constant in their orientation."""
+    """The point pairs of two images and what stays constant in their orientation.
 
-    left_vectors: _Floats
-    right_vectors: _Floats
+    `blocks` holds the points, _LANES at a time, in the order that vector instructions want: x, y,
+    z left, x, y, z right and the roots of the weights, _LANES numbers each; the last block is
+    filled up with points of weight 0.
+    """
+
+    blocks: _Floats
     weights: _Floats
     frames: _Floats
     phi_first: bool
     free: _Ints
+
+
+@inner_kernel
+def _packed(left_vectors: _Floats, right_vectors: _Floats) -> _Floats:
+    n = len(left_vectors)
+    blocks = np.empty(((n + _LANES - 1) // _LANES, 7 * _LANES))
+    for first in range(len(blocks)):
+        block = blocks[first]
+        for k in range(_LANES):
+            point = min(first * _LANES + k, n - 1)
+            for axis in range(3):
+                block[axis * _LANES + k] = left_vectors[point, axis]
+                block[(axis + 3) * _LANES + k] = right_vectors[point, axis]
+            block[6 * _LANES + k] = 0.0
+    return blocks
+
+
+@inner_kernel
+def _weigh(pair: _Pair) -> None:
+    for k in range(len(pair.weights)):
+        pair.blocks[k // _LANES, 6 * _LANES + k % _LANES] = np.sqrt(pair.weights[k])
+
+
+@inner_kernel
+def _ray(block: _Floats, image: int, k: int) -> _Vector:
+    first = 3 * _LANES * image + k
+    return block[first], block[first + _LANES], block[first + 2 * _LANES]
 
 
 @inner_kernel
@@ -238,35 +272,39 @@ def _base(state: _Floats) -> _Vector:
 
 
 @inner_kernel
-def _local_normals(pair: _Pair, rotation: _Floats, base: _Vector, n: _Floats, g: _Floats) -> float:
-    """Sum of weighted q^2; adds to the normals n (8, 8) and the gradient g (8,).
-
-    Their elements are small turns of either image about the axes of the base frame, BY and BZ.
-    """
-    left, right = rotation[0], rotation[1]
-    row = np.empty(_N_STATE)
-    cost = 0.0
-    for k in range(len(pair.weights)):
-        a, b = _rotated(left, pair.left_vectors[k]), _rotated(right, pair.right_vectors[k])
-        q, da, db, dbase = _parallax_gradients(a, b, base)
-        row[0] = a[1] * da[2] - a[2] * da[1]
-        row[1] = a[2] * da[0] - a[0] * da[2]
-        row[2] = a[0] * da[1] - a[1] * da[0]
-        row[3] = b[1] * db[2] - b[2] * db[1]
-        row[4] = b[2] * db[0] - b[0] * db[2]
-        row[5] = b[0] * db[1] - b[1] * db[0]
-        row[6], row[7] = dbase[1], dbase[2]
-        weight = pair.weights[k]
-        cost += weight * q * q
-        for i in range(_N_STATE):
-            weighted = weight * row[i]
-            g[i] += weighted * q
-            for j in range(_N_STATE):
-                n[i, j] += weighted * row[j]
-    return cost
+def _in_registers(matrix: _Floats) -> _Matrix:
+    return (
+        (matrix[0, 0], matrix[0, 1], matrix[0, 2]),
+        (matrix[1, 0], matrix[1, 1], matrix[1, 2]),
+        (matrix[2, 0], matrix[2, 1], matrix[2, 2]),
+    )
 
 
 @inner_kernel
+def _design(block: _Floats, rotation: _Floats, base: _Vector, design: _Floats) -> None:
+    """Write the weighted derivatives and, last, the weighted q of the points of a block.
+
+    The derivatives are by small turns of either image about the axes of the base frame, by BY
+    and by BZ. `design` is (9 * _LANES,).
+    """
+    left, right = _in_registers(rotation[0]), _in_registers(rotation[1])
+    for k in range(_LANES):
+        a, b = _rotated(left, _ray(block, 0, k)), _rotated(right, _ray(block, 1, k))
+        q, da, db, dbase = _parallax_gradients(a, b, base)
+        by_left, by_right = _cross(a, da), _cross(b, db)
+        root = block[6 * _LANES + k]
+        design[k] = root * by_left[0]
+        design[1 * _LANES + k] = root * by_left[1]
+        design[2 * _LANES + k] = root * by_left[2]
+        design[3 * _LANES + k] = root * by_right[0]
+        design[4 * _LANES + k] = root * by_right[1]
+        design[5 * _LANES + k] = root * by_right[2]
+        design[6 * _LANES + k] = root * dbase[1]
+        design[7 * _LANES + k] = root * dbase[2]
+        design[8 * _LANES + k] = root * q
+
+
+@summing_kernel
 def _sum_of_products(a: _Floats, b: _Floats) -> float:
     total = 0.0
     for i in range(len(a)):
@@ -277,20 +315,30 @@ def _sum_of_products(a: _Floats, b: _Floats) -> float:
 @inner_kernel
 def _normals(pair: _Pair, state: _Floats, normals: _Floats, gradient: _Floats) -> float:
     """Sum of weighted q^2, with the normals and the gradient of the free elements."""
-    local_normals, local_gradient = np.zeros((_N_STATE, _N_STATE)), np.zeros(_N_STATE)
     elements = np.zeros((_N_STATE, _N_STATE))  # columns: elements; rows: turns, BY, BZ
-    rotation = _turns(pair, state, elements)
     elements[6, 6] = elements[7, 7] = 1.0
-    cost = _local_normals(pair, rotation, _base(state), local_normals, local_gradient)
+    rotation = _turns(pair, state, elements)
+    products = np.zeros((_N_STATE + 1, _N_STATE + 1))
+    design = np.empty((_N_STATE + 1) * _LANES)
+    for block in range(len(pair.blocks)):
+        _design(pair.blocks[block], rotation, _base(state), design)
+        for i in range(_N_STATE + 1):
+            row = design[i * _LANES : (i + 1) * _LANES]
+            for j in range(i + 1):
+                other = design[j * _LANES : (j + 1) * _LANES]
+                products[i, j] += _sum_of_products(row, other)
+    for i in range(_N_STATE):
+        for j in range(i):
+            products[j, i] = products[i, j]
     for i in range(len(pair.free)):
         column = elements[:, pair.free[i]]
-        gradient[i] = _sum_of_products(column, local_gradient)
+        gradient[i] = _sum_of_products(column, products[_N_STATE])
         for j in range(len(pair.free)):
             other = elements[:, pair.free[j]]
             normals[i, j] = 0.0
             for k in range(_N_STATE):
-                normals[i, j] += column[k] * _sum_of_products(local_normals[k], other)
-    return cost
+                normals[i, j] += column[k] * _sum_of_products(other, products[k])
+    return products[_N_STATE, _N_STATE]
 
 
 @inner_kernel
@@ -380,14 +428,16 @@ def _least_squares(pair: _Pair, state: _Floats, last_step_px: float) -> tuple[in
 
 @inner_kernel
 def _residuals(pair: _Pair, state: _Floats) -> _Floats:
-    elements = np.empty((_N_STATE, _N_STATE))
-    rotation = _turns(pair, state, elements)
-    left, right = rotation[0], rotation[1]
-    q = np.empty(len(pair.weights))
-    for k in range(len(q)):
-        a, b = _rotated(left, pair.left_vectors[k]), _rotated(right, pair.right_vectors[k])
-        q[k] = _parallax(a, b, _base(state))
-    return q
+    rotation = _turns(pair, state, np.empty((_N_STATE, _N_STATE)))
+    left, right = _in_registers(rotation[0]), _in_registers(rotation[1])
+    base = _base(state)
+    q = np.empty((len(pair.blocks), _LANES))
+    for i in range(len(q)):
+        block, row = pair.blocks[i], q[i]
+        for k in range(_LANES):
+            a, b = _rotated(left, _ray(block, 0, k)), _rotated(right, _ray(block, 1, k))
+            row[k] = _parallax(a, b, base)
+    return q.reshape(-1)[: len(pair.weights)]
 
 
 @inner_kernel
@@ -435,6 +485,7 @@ def _reweighted(pair: _Pair, state: _Floats, tukey: bool) -> float:
             weight = min(1.0, _HUBER / size)
         change = max(change, abs(weight - pair.weights[k]))
         pair.weights[k] = weight
+    _weigh(pair)
     return change
 
 
@@ -508,13 +559,13 @@ def adjust_pairs(
     for p in pairs:
         points = slice(offsets[p], offsets[p + 1])
         pair = _Pair(
-            left_vectors[points],
-            right_vectors[points],
+            _packed(left_vectors[points], right_vectors[points]),
             weights[points],
             frames[p],
             phi_first,
             free,
         )
+        _weigh(pair)
         status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
         if robust:
             _find_blunders(pair, state[p])
