@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from test_scenario import changed
 
+from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.rotation import rotation_from_angles, vector_from_rotation, wrapped
 from posstats.scenario import AngleError, load_scenario
@@ -91,6 +92,50 @@ def test_a_block_with_crs_is_computed_in_a_tangent_frame_and_maps_back(frame):
     position = block.frame.to_crs(block.adjusted.position_m)
     np.testing.assert_allclose(position[:, :2].mean(axis=0), frame["origin_m"], atol=1e-4)
     np.testing.assert_allclose(position[:, 2], 1800.0, atol=1e-4)
+
+
+def test_vertical_images_of_a_block_with_crs_look_down_the_local_vertical_and_up_the_grid():
+    # Far off the central meridian and over 30 km: small steps in the crs, mapped, are the axes.
+    block = simulate(
+        scenario_with(
+            block=UTM_33,
+            flight={"tilt_rad": 0, "headings_deg": 0, "images_per_strip": 100},
+            tie_points={"per_model": 10},
+        )
+    )
+    position = block.frame.to_crs(block.adjusted.position_m)
+    for axis, column in ((1, 1), (2, 2)):  # image y: grid north; image z: the vertical
+        step = np.zeros(3)
+        step[axis] = 50.0
+        moved = block.frame.to_computing(position + step) - block.frame.to_computing(
+            position - step
+        )
+        direction = moved / np.linalg.norm(moved, axis=1, keepdims=True)
+        np.testing.assert_allclose(
+            block.adjusted.ground_from_image[:, :, column], direction, atol=2e-5
+        )
+    # The vertical at the ends of the strips does lean, by 16 km over the earth's radius.
+    assert np.abs(block.adjusted.ground_from_image[:, 1, 2]).max() > 2e-3
+
+
+@pytest.mark.parametrize("frame", [{}, LAMBERT_93, UTM_33 | {"frame": "grid"}])
+def test_a_simulated_block_is_read_back_as_it_was_written(frame, tmp_path):
+    errors = {"image_px": 0.2, "omega": {"noise_rad": 1e-5}, "position": {"noise_m": 0.05}}
+    distortion = {"distortion": {"model": "brown", "k1": 0.05, "p1": 1e-3}}
+    spec = {"n": 4, "ground_m": 0.1}
+    block = simulate(
+        scenario_with(block=frame, errors=errors, camera=distortion, check_points=spec)
+    )
+    write_block(block, tmp_path)
+    read = read_block(tmp_path)
+    assert read.simulated
+    assert read.warnings == ()
+    assert list(read.orientations.image) == list(block.orientations.image)
+    assert list(read.tie_points.point_id) == list(block.tie_points.point_id)
+    np.testing.assert_allclose(read.tie_points.xy_px, block.tie_points.xy_px, atol=1e-7)
+    np.testing.assert_allclose(angle_errors(read), angle_errors(block), atol=1e-12)
+    q, truth = true_models(read).y_parallax_px(), true_models(block).y_parallax_px()
+    np.testing.assert_allclose(q, truth, atol=1e-6)
 
 
 def test_a_block_on_the_grid_keeps_its_coordinates():
@@ -360,6 +405,23 @@ def test_corner_points_are_the_middle_the_corners_and_a_grid():
     assert plane(1) == {(0.0, 0.0)}
     assert plane(4) == corners
     assert plane(9) >= corners | {(0.0, 0.0)}
+
+
+def test_a_long_cross_strip_does_not_draw_the_surveyed_points_out_of_the_block():
+    flight = {"n_strips": None, "images_per_strip": [5, 5, 15], "headings_deg": [0, 180, 90]}
+    spec = {"n": 15, "distribution": "corners"}
+    block = simulate(scenario_with(flight=flight, check_points=spec))
+    assert np.abs(block.ground_points.position_m[:, 0]).max() == pytest.approx(350.0)
+    assert block.warnings == ()
+
+
+def test_the_terrain_has_the_standard_deviation_of_a_sine_of_its_amplitude():
+    terrain = {"relief_m": 60, "wavelength_m": 500, "mean_height_m": 200}
+    block = simulate(scenario_with(terrain=terrain, flight={"images_per_strip": 40}))
+    height = intersected(block)[:, 2]
+    # 24 waves over some ten wavelengths: near, not at, the expectation.
+    assert height.std() == pytest.approx(60 / np.sqrt(2), rel=0.15)
+    assert height.mean() == pytest.approx(200, abs=10)
 
 
 def test_surveyed_points_have_their_own_image_and_ground_noise():
