@@ -107,7 +107,6 @@ def check_point_residuals(
     """
     given = _check_points(block.ground_points)
     number = {point: k for k, point in enumerate(block.tie_points.point_id)}
-    # -1 is no point's number: a check point that no image shows has no rays
     points = np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
     computed = intersect(
         block.tie_points,

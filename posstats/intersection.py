@@ -87,7 +87,8 @@ def intersect(
     cameras
         The block's cameras.
     points
-        (k,) indices into `tie_points.point_id`; all points if None.
+        (k,) indices into `tie_points.point_id`, negative for points that no image shows; all
+        points if None.
     sigma_image_px
         Standard deviation of an image coordinate, for the covariances.
 
@@ -97,7 +98,7 @@ def intersect(
         One row for every wanted point, in that order.
     """
     wanted = np.arange(len(tie_points.point_id)) if points is None else np.asarray(points, np.intp)
-    rays = _usable_rays(tie_points, orientations)
+    rays = _usable_rays(tie_points, orientations, wanted)
     first = np.searchsorted(rays.point, wanted, side="left")
     last = np.searchsorted(rays.point, wanted, side="right")
     vectors = image_vectors(rays, orientations, cameras)
@@ -121,11 +122,13 @@ def intersect(
     )
 
 
-def _usable_rays(tie_points: TiePoints, orientations: Orientations) -> TiePoints:
-    """Measurements in images that have an orientation, sorted by point, then image."""
+def _usable_rays(tie_points: TiePoints, orientations: Orientations, wanted: _Ints) -> TiePoints:
+    """Rays of the wanted points in images that have an orientation, sorted by point, image."""
     elements = np.hstack([orientations.position_m, orientations.angles_rad])
     oriented: NDArray[np.bool_] = np.all(np.isfinite(elements), axis=1)
-    usable = tie_points.subset(oriented[tie_points.image])
+    is_wanted = np.zeros(len(tie_points.point_id), dtype=bool)
+    is_wanted[wanted[wanted >= 0]] = True
+    usable = tie_points.subset(oriented[tie_points.image] & is_wanted[tie_points.point])
     order = np.lexsort((usable.image, usable.point))
     return replace(
         usable, point=usable.point[order], image=usable.image[order], xy_px=usable.xy_px[order]
