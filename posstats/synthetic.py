@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Accuracy, Block, GroundPoints, Orientations, TiePoints
+from posstats.block import Accuracy, Block, GroundPoints, Orientations
+from posstats.block_warnings import block_warnings
 from posstats.flight_plan import FlightPlan, fly
 from posstats.frames import GroundFrame, require_map_grid
 from posstats.rotation import (
@@ -56,19 +57,18 @@ def simulate(scenario: Scenario, seed: int | None = None) -> Block:
     points = true_points(scenario, plan, surface, frame, streams)
     camera = scenario.camera.camera
     rays = imaged(points, truth, camera, reach_m(camera, plan, surface))
-    tie_points = measured(rays, points, camera, scenario, streams)
-    return Block(
+    block = Block(
         name=scenario.block.name,
         cameras=(camera,),
         orientations=_pos(scenario, truth, streams),
-        tie_points=tie_points,
+        tie_points=measured(rays, points, camera, scenario, streams),
         frame=frame,
         accuracy=_stated_accuracy(scenario),
         ground_points=_surveyed(points, streams["survey"]),
         adjusted=truth,
         simulated=True,
-        warnings=(*_short_strips(scenario), *_unseen(points, tie_points)),
     )
+    return replace(block, warnings=tuple(block_warnings(block)))
 
 
 def _ground_frame(scenario: Scenario, plan: FlightPlan) -> GroundFrame:
@@ -166,24 +166,3 @@ def _surveyed(points: TruePoints, rng: np.random.Generator) -> GroundPoints | No
         sigma_xy_m=stated,
         sigma_z_m=stated.copy(),
     )
-
-
-def _short_strips(scenario: Scenario) -> tuple[str, ...]:
-    short = sum(n == 1 for n in scenario.flight.image_counts)
-    return (f"{short} strips of one image: no stereo models there",) if short else ()
-
-
-def _unseen(points: TruePoints, tie_points: TiePoints) -> tuple[str, ...]:
-    """Surveyed points that cannot be intersected."""
-    rays = dict(
-        zip(
-            tie_points.point_id,
-            np.bincount(tie_points.point, minlength=len(tie_points.point_id)),
-            strict=True,
-        )
-    )
-    ground = points.id[points.kind != "tie"]
-    unseen = [point for point in ground if rays.get(point, 0) < 2]
-    if not unseen:
-        return ()
-    return (f"ground points seen in fewer than two images: {', '.join(unseen)}",)
