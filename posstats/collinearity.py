@@ -15,6 +15,7 @@ from posstats.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
+_Vector = tuple[float, float, float]
 
 INTERSECTED, FEW_RAYS, PARALLEL, BEHIND_CAMERA, NOT_CONVERGED = range(5)
 
@@ -25,22 +26,33 @@ _CONVERGED = 1e-10  # last step over the distance of the point
 
 
 @inner_kernel
-def _into_camera(ground_from_image: _Floats, x: float, y: float, z: float, out: _Floats) -> None:
-    for i in range(3):
-        column = ground_from_image[:, i]
-        out[i] = column[0] * x + column[1] * y + column[2] * z
+def _transposed_times(r: _Floats, x: float, y: float, z: float) -> _Vector:
+    """R^T (x, y, z)."""
+    return (
+        r[0, 0] * x + r[1, 0] * y + r[2, 0] * z,
+        r[0, 1] * x + r[1, 1] * y + r[2, 1] * z,
+        r[0, 2] * x + r[1, 2] * y + r[2, 2] * z,
+    )
+
+
+@inner_kernel
+def _from_centre(ground: _Floats, centre: _Floats, ground_from_image: _Floats) -> _Vector:
+    """The point in the camera, u = R^T (X - S)."""
+    return _transposed_times(
+        ground_from_image, ground[0] - centre[0], ground[1] - centre[1], ground[2] - centre[2]
+    )
 
 
 @inner_kernel
 def _projection_gradient(
-    ground_from_image: _Floats, u: _Floats, distance: float, out: _Floats
+    ground_from_image: _Floats, u: _Vector, distance: float, out: _Floats
 ) -> None:
     """d(x, y) / d(X, Y, Z), written to out (2, 3); u is the point in the camera."""
-    depth = -u[2]
+    scale = -distance / u[2]
     for axis in range(2):
         for j in range(3):
-            out[axis, j] = (distance / depth) * (
-                ground_from_image[j, axis] + u[axis] / depth * ground_from_image[j, 2]
+            out[axis, j] = scale * (
+                ground_from_image[j, axis] - u[axis] / u[2] * ground_from_image[j, 2]
             )
 
 
@@ -69,11 +81,9 @@ def project(
         (n,) principal distance of every image.
     """
     xy = np.full((len(point), 2), np.nan)
-    u = np.empty(3)
     for k in range(len(point)):
         i = image[k]
-        line = ground_m[point[k]] - position_m[i]
-        _into_camera(ground_from_image[i], line[0], line[1], line[2], u)
+        u = _from_centre(ground_m[point[k]], position_m[i], ground_from_image[i])
         if u[2] < 0.0:
             xy[k, 0] = -distance_px[i] * u[0] / u[2]
             xy[k, 1] = -distance_px[i] * u[1] / u[2]
@@ -110,11 +120,9 @@ def project_derivatives(
     m = len(point)
     xy = np.full((m, 2), np.nan)
     by_angles, by_ground = np.full((m, 2, 3), np.nan), np.full((m, 2, 3), np.nan)
-    u, du = np.empty(3), np.empty(3)
     for k in range(m):
         i = image[k]
-        line = ground_m[point[k]] - position_m[i]
-        _into_camera(ground_from_image[i], line[0], line[1], line[2], u)
+        u = _from_centre(ground_m[point[k]], position_m[i], ground_from_image[i])
         if u[2] >= 0.0:
             continue
         _projection_gradient(ground_from_image[i], u, distance_px[i], by_ground[k])
@@ -122,7 +130,7 @@ def project_derivatives(
         for axis in range(2):
             xy[k, axis] = scale * u[axis]
         for angle in range(3):
-            _into_camera(rotation_derivatives[i, angle], line[0], line[1], line[2], du)
+            du = _from_centre(ground_m[point[k]], position_m[i], rotation_derivatives[i, angle])
             for axis in range(2):
                 by_angles[k, axis, angle] = scale * (du[axis] - u[axis] / u[2] * du[2])
     return xy, by_angles, by_ground
@@ -146,23 +154,26 @@ def _solved(matrix: _Floats, right: _Floats, out: _Floats) -> None:
 
 
 @inner_kernel
-def _directions(vectors: _Floats, image: _Ints, ground_from_image: _Floats, out: _Floats) -> None:
-    """Unit directions (r, 3) of the rays in the ground frame, written to out."""
-    for k in range(len(image)):
-        rotation, vector = ground_from_image[image[k]], vectors[k]
-        norm = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
-        for i in range(3):
-            out[k, i] = (
-                rotation[i, 0] * vector[0] + rotation[i, 1] * vector[1] + rotation[i, 2] * vector[2]
-            ) / norm
+def _direction(ground_from_image: _Floats, vector: _Floats) -> _Vector:
+    """Unit direction of a ray in the ground frame."""
+    r, x, y, z = ground_from_image, vector[0], vector[1], vector[2]
+    norm = np.sqrt(x * x + y * y + z * z)
+    return (
+        (r[0, 0] * x + r[0, 1] * y + r[0, 2] * z) / norm,
+        (r[1, 0] * x + r[1, 1] * y + r[1, 2] * z) / norm,
+        (r[2, 0] * x + r[2, 1] * y + r[2, 2] * z) / norm,
+    )
 
 
 @inner_kernel
-def _are_parallel(directions: _Floats) -> bool:
-    """Whether no two of the rays (r, 3) meet at an angle of at least `_MIN_ANGLE_RAD`."""
-    for i in range(len(directions)):
-        for j in range(i):
-            a, b = directions[i], directions[j]
+def _are_parallel(
+    first: int, last: int, vectors: _Floats, image: _Ints, ground_from_image: _Floats
+) -> bool:
+    """Whether no two of the rays meet at an angle of at least `_MIN_ANGLE_RAD`."""
+    for k in range(first, last):
+        a = _direction(ground_from_image[image[k]], vectors[k])
+        for j in range(first, k):
+            b = _direction(ground_from_image[image[j]], vectors[j])
             x = a[1] * b[2] - a[2] * b[1]
             y = a[2] * b[0] - a[0] * b[2]
             z = a[0] * b[1] - a[1] * b[0]
@@ -173,46 +184,55 @@ def _are_parallel(directions: _Floats) -> bool:
 
 @inner_kernel
 def _nearest_to_rays(
-    directions: _Floats, centres: _Floats, normals: _Floats, right: _Floats, out: _Floats
+    first: int,
+    last: int,
+    vectors: _Floats,
+    image: _Ints,
+    ground_from_image: _Floats,
+    position_m: _Floats,
+    out: _Floats,
 ) -> None:
-    """The point of least squared distances to the rays: sum (I - d d^T) (X - S) = 0."""
-    normals[:] = 0.0
-    right[:] = 0.0
-    for k in range(len(directions)):
+    """The point of least squared distances to the rays: sum (I - d d^T) (X - S) = 0.
+
+    Relative to the first ray's projection centre, as in all that follows.
+    """
+    normals, right = np.zeros((3, 3)), np.zeros(3)
+    origin = position_m[image[first]]
+    for k in range(first, last):
+        d = _direction(ground_from_image[image[k]], vectors[k])
         for i in range(3):
             for j in range(3):
-                element = -directions[k, i] * directions[k, j]
-                if i == j:
-                    element += 1.0
+                element = (1.0 if i == j else 0.0) - d[i] * d[j]
                 normals[i, j] += element
-                right[i] += element * centres[k, j]
+                right[i] += element * (position_m[image[k], j] - origin[j])
     _solved(normals, right, out)
 
 
 @inner_kernel
 def _image_step(
     ground: _Floats,
+    first: int,
+    last: int,
     vectors: _Floats,
     image: _Ints,
-    centres: _Floats,
     ground_from_image: _Floats,
-    work: _Floats,
+    position_m: _Floats,
     step: _Floats,
 ) -> bool:
-    """One Gauss-Newton step on the image residuals; false if the point is behind a camera.
-
-    `work` (7, 3) holds the point in the camera, the gradient (2, 3), the normals and the
-    right-hand side.
-    """
-    u, gradient, normals, right = work[0], work[1:3], work[3:6], work[6]
-    normals[:] = 0.0
-    right[:] = 0.0
-    for k in range(len(image)):
-        rotation, distance = ground_from_image[image[k]], -vectors[k, 2]
-        x, y, z = ground[0] - centres[k, 0], ground[1] - centres[k, 1], ground[2] - centres[k, 2]
-        _into_camera(rotation, x, y, z, u)
+    """Write a Gauss-Newton step on the image residuals; false if the point is behind a camera."""
+    normals, right, gradient = np.zeros((3, 3)), np.zeros(3), np.empty((2, 3))
+    origin = position_m[image[first]]
+    for k in range(first, last):
+        rotation, centre = ground_from_image[image[k]], position_m[image[k]]
+        u = _transposed_times(
+            rotation,
+            ground[0] - (centre[0] - origin[0]),
+            ground[1] - (centre[1] - origin[1]),
+            ground[2] - (centre[2] - origin[2]),
+        )
         if not u[2] < 0.0:
             return False
+        distance = -vectors[k, 2]
         _projection_gradient(rotation, u, distance, gradient)
         for axis in range(2):
             residual = vectors[k, axis] + distance * u[axis] / u[2]
@@ -227,22 +247,27 @@ def _image_step(
 @inner_kernel
 def _refined(
     ground: _Floats,
+    first: int,
+    last: int,
     vectors: _Floats,
     image: _Ints,
-    centres: _Floats,
     ground_from_image: _Floats,
-    work: _Floats,
-    step: _Floats,
+    position_m: _Floats,
 ) -> int:
     """Gauss-Newton from `ground` (changed in place); returns the point's status."""
+    step = np.empty(3)
     for _ in range(_MAX_STEPS):
-        if not _image_step(ground, vectors, image, centres, ground_from_image, work, step):
+        if not _image_step(
+            ground, first, last, vectors, image, ground_from_image, position_m, step
+        ):
             return BEHIND_CAMERA
-        ground += step
-        moved = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
+        moved, distance = 0.0, 0.0
+        for i in range(3):
+            ground[i] += step[i]
+            moved += step[i] ** 2
+            distance += ground[i] ** 2
         if not np.isfinite(moved):
             return NOT_CONVERGED
-        distance = ground[0] ** 2 + ground[1] ** 2 + ground[2] ** 2
         if moved <= _CONVERGED**2 * distance:
             return INTERSECTED
     return NOT_CONVERGED
@@ -284,54 +309,48 @@ def intersect_rays(
     """
     ground_m = np.full((len(first), 3), np.nan)
     status = np.full(len(first), FEW_RAYS)
-    work, step, point = np.empty((7, 3)), np.empty(3), np.empty(3)
+    point = np.empty(3)
     for k in range(len(first)):
-        if last[k] - first[k] < 2:
+        start, stop = first[k], last[k]
+        if stop - start < 2:
             continue
-        rays = slice(first[k], last[k])
-        images = image[rays]
-        directions = np.empty((len(images), 3))
-        _directions(vectors[rays], images, ground_from_image, directions)
-        if _are_parallel(directions):
+        if _are_parallel(start, stop, vectors, image, ground_from_image):
             status[k] = PARALLEL
             continue
-        origin = position_m[images[0]]
-        centres = position_m[images] - origin
-        _nearest_to_rays(directions, centres, work[3:6], work[6], point)
-        status[k] = _refined(point, vectors[rays], images, centres, ground_from_image, work, step)
+        _nearest_to_rays(start, stop, vectors, image, ground_from_image, position_m, point)
+        status[k] = _refined(point, start, stop, vectors, image, ground_from_image, position_m)
         if status[k] == INTERSECTED:
-            ground_m[k] = point + origin
+            for i in range(3):
+                ground_m[k, i] = point[i] + position_m[image[start], i]
     return ground_m, status
 
 
 @inner_kernel
-def _inverse_normals(by_ground: _Floats, work: _Floats, out: _Floats) -> None:
-    """(J'J)^-1 of one point's rays, J = by_ground (r, 2, 3), written to out (3, 3)."""
-    normals, unit = work[:3], work[3]
-    normals[:] = 0.0
-    for k in range(len(by_ground)):
+def _inverse_normals(first: int, last: int, by_ground: _Floats, out: _Floats) -> None:
+    """(J'J)^-1 of one point's rays, J = by_ground[first:last], written to out (3, 3)."""
+    normals, unit = np.zeros((3, 3)), np.zeros(3)
+    for k in range(first, last):
         for axis in range(2):
             for i in range(3):
                 for j in range(3):
                     normals[i, j] += by_ground[k, axis, i] * by_ground[k, axis, j]
     for i in range(3):
-        unit[:] = 0.0
         unit[i] = 1.0
         _solved(normals, unit, out[i])
+        unit[i] = 0.0
 
 
 @inner_kernel
 def _add_variance(
-    cofactors: _Floats, by_ground: _Floats, dx: float, dy: float, work: _Floats, out: _Floats
+    cofactors: _Floats, by_ground: _Floats, dx: float, dy: float, out: _Floats
 ) -> None:
     """Add the covariance of a point whose ray is shifted in the image by dx, dy (one sigma)."""
-    pulled, shift = work[0], work[1]
-    for i in range(3):
-        pulled[i] = by_ground[0, i] * dx + by_ground[1, i] * dy
-    for i in range(3):
-        shift[i] = (
-            cofactors[i, 0] * pulled[0] + cofactors[i, 1] * pulled[1] + cofactors[i, 2] * pulled[2]
-        )
+    x, y, z = (
+        by_ground[0, 0] * dx + by_ground[1, 0] * dy,
+        by_ground[0, 1] * dx + by_ground[1, 1] * dy,
+        by_ground[0, 2] * dx + by_ground[1, 2] * dy,
+    )
+    shift = _transposed_times(cofactors, x, y, z)  # cofactors are symmetric
     for i in range(3):
         for j in range(3):
             out[i, j] += shift[i] * shift[j]
@@ -371,17 +390,25 @@ def intersection_precision(
     """
     cofactors = np.empty((len(offsets) - 1, 3, 3))
     from_orientations = np.zeros((len(offsets) - 1, 3, 3))
-    work = np.empty((4, 3))
     for k in range(len(offsets) - 1):
-        _inverse_normals(by_ground[offsets[k] : offsets[k + 1]], work, cofactors[k])
+        _inverse_normals(offsets[k], offsets[k + 1], by_ground, cofactors[k])
         for ray in range(offsets[k], offsets[k + 1]):
             gradient, turned = by_ground[ray], by_angles[ray]
             for i in range(3):
                 angle = sigma_angles_rad[image[ray], i]
                 centre = sigma_position_m[image[ray], i]
-                for dx, dy in (
-                    (turned[0, i] * angle, turned[1, i] * angle),
-                    (gradient[0, i] * centre, gradient[1, i] * centre),
-                ):
-                    _add_variance(cofactors[k], gradient, dx, dy, work, from_orientations[k])
+                _add_variance(
+                    cofactors[k],
+                    gradient,
+                    turned[0, i] * angle,
+                    turned[1, i] * angle,
+                    from_orientations[k],
+                )
+                _add_variance(
+                    cofactors[k],
+                    gradient,
+                    gradient[0, i] * centre,
+                    gradient[1, i] * centre,
+                    from_orientations[k],
+                )
     return cofactors, from_orientations
