@@ -42,6 +42,15 @@ class FlightPlan:
     map_from_image: _Floats
     heading_rad: _Floats
 
+    @property
+    def _parallel_to_first(self) -> NDArray[np.bool_]:
+        return np.asarray(np.abs(np.sin(self.heading_rad - self.heading_rad[0])) < 1e-6)
+
+    @property
+    def n_parallel_strips(self) -> int:
+        """Number of strips parallel to the first, with it."""
+        return len(set(self.strip[self._parallel_to_first]))
+
     def rectangle(self, least_size_m: _Floats) -> tuple[_Floats, _Floats, _Floats]:
         """Rectangle over the planned exposures of the strips parallel to the first.
 
@@ -55,8 +64,7 @@ class FlightPlan:
         axes (2, 2) unit vectors along and across; lower and upper corner (2,) in these axes.
         """
         axes = np.stack([_forward(self.heading_rad[0]), _right(self.heading_rad[0])])
-        parallel = np.abs(np.sin(self.heading_rad - self.heading_rad[0])) < 1e-6
-        plane = self.planned_xy_m[parallel] @ axes.T
+        plane = self.planned_xy_m[self._parallel_to_first] @ axes.T
         low, high = plane.min(axis=0), plane.max(axis=0)
         lacking = 0.5 * np.maximum(least_size_m - (high - low), 0.0)
         return axes, low - lacking, high + lacking

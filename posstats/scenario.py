@@ -250,14 +250,16 @@ class PointSpec(Table):
         Number of points.
     distribution
         ``grid``: the centres of a grid of cells over the projection centres; ``corners``: a grid
-        that reaches the corners (1 is the middle, 4 the corners); or ``random``.
+        that reaches the corners (1 is the middle, 4 the corners); ``side-overlap``: in the
+        middle of the overlaps of neighbouring strips, where most images see them; ``random``.
     image_px, ground_m
         Standard deviation of their image measurements and of their survey.
     """
 
     n: _PointCount = 0
     distribution: Annotated[
-        Literal["grid", "corners", "random"], one_of("grid", "corners", "random")
+        Literal["grid", "corners", "side-overlap", "random"],
+        one_of("grid", "corners", "side-overlap", "random"),
     ] = "grid"
     image_px: _NotNegative = 0.0
     ground_m: _NotNegative = 0.0

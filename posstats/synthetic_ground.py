@@ -1,7 +1,6 @@
 """The ground of a simulated block: terrain, tie points, check and control points."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,26 +139,38 @@ def _spread(
     if spec.distribution == "random":
         share = rng.uniform(size=(spec.n, 2))
     else:
-        share = _even_shares(spec.n, high - low, spec.distribution)
+        share = _even_shares(spec, high - low, plan.n_parallel_strips)
     spread: _Floats = (low + share * (high - low)) @ axes
     return spread
 
 
-def _even_shares(n: int, size_m: _Floats, distribution: Literal["grid", "corners"]) -> _Floats:
+def _even_shares(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
     """Even spread (n, 2) over a unit square that stands for a rectangle of `size_m`."""
-    if n == 0:
+    if spec.n == 0:
         return np.empty((0, 2))
-    lines = min(max(1, round(np.sqrt(n * size_m[1] / size_m[0]))), n)
-    if distribution == "corners" and n >= 4:
-        lines = min(max(2, lines), n // 2)
-    per_line = [len(part) for part in np.array_split(np.arange(n), lines)]
-    across = _even(lines, distribution)
+    lines = _lines(spec, size_m, n_strips)
+    per_line = [len(part) for part in np.array_split(np.arange(spec.n), len(lines))]
+    spaced = _edge_to_edge if spec.distribution == "corners" else _cell_centres
     return np.array(
-        [(u, v) for v, m in zip(across, per_line, strict=True) for u in _even(m, distribution)]
+        [(u, v) for v, m in zip(lines, per_line, strict=True) for u in spaced(m)],
     )
 
 
-def _even(n: int, distribution: Literal["grid", "corners"]) -> _Floats:
-    if distribution == "corners" and n > 1:
-        return np.linspace(0.0, 1.0, n)
+def _lines(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
+    """Places (lines,) across the flight of lines of points along it."""
+    if spec.distribution == "side-overlap":
+        overlaps = max(n_strips - 1, 1)
+        used = np.floor(_cell_centres(min(spec.n, overlaps)) * overlaps)
+        return np.asarray((used + 0.5) / overlaps)
+    square = min(max(1, round(np.sqrt(spec.n * size_m[1] / size_m[0]))), spec.n)
+    if spec.distribution == "grid":
+        return _cell_centres(square)
+    return _edge_to_edge(min(max(2, square), spec.n // 2) if spec.n >= 4 else square)
+
+
+def _cell_centres(n: int) -> _Floats:
     return (np.arange(n) + 0.5) / n
+
+
+def _edge_to_edge(n: int) -> _Floats:
+    return np.linspace(0.0, 1.0, n) if n > 1 else np.array([0.5])

@@ -380,7 +380,7 @@ def test_blunders_have_their_share_and_length_and_spare_the_check_points():
 # --- check and control points -------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("distribution", ["grid", "corners", "random"])
+@pytest.mark.parametrize("distribution", ["grid", "corners", "side-overlap", "random"])
 @pytest.mark.parametrize("n", [1, 2, 4, 7, 15])
 def test_surveyed_points_lie_in_the_block_and_are_seen_twice(distribution, n):
     spec = {"n": n, "distribution": distribution}
@@ -405,6 +405,19 @@ def test_corner_points_are_the_middle_the_corners_and_a_grid():
     assert plane(1) == {(0.0, 0.0)}
     assert plane(4) == corners
     assert plane(9) >= corners | {(0.0, 0.0)}
+
+
+def test_points_in_the_side_overlaps_lie_midway_between_the_strips():
+    def across(n):
+        spec = {"n": n, "distribution": "side-overlap"}
+        block = simulate(scenario_with(check_points=spec, flight={"n_strips": 5, "tilt_rad": 0}))
+        assert np.bincount(block.tie_points.point)[block.check_points].min() >= 4
+        return block.ground_points.position_m[:, 0]
+
+    # Strips at x = -1400, -700, 0, 700, 1400.
+    np.testing.assert_allclose(across(6), [-1050, -1050, -350, -350, 350, 1050], atol=1e-9)
+    np.testing.assert_allclose(across(2), [-350, 1050], atol=1e-9)
+    assert np.bincount(np.digitize(across(15), [-700, 0, 700])).tolist() == [4, 4, 4, 3]
 
 
 def test_a_long_cross_strip_does_not_draw_the_surveyed_points_out_of_the_block():
