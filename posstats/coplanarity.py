@@ -180,11 +180,13 @@ _N_STATE = 8
 _LANES = 64  # points worked on at once
 _MAX_ITERATIONS = 100
 _LAST_STEP_PX = 1e-9  # RMS change of q; of the angles about 1e-13 rad
-_ROUNDING, _ROUNDING_PX2 = 1e-10, 1e-10**2  # to which a sum of squares, and q^2, are known
-_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-4, 1e-6, 1e10
+_LAST_DECREASE = 1e-14  # share of the sum of squares, for large residuals
+_ROUNDING_PX = 1e-11  # of q, and so of the sum of squares
+_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-4, 1e10
+_POOR_GAIN = 0.25  # share of the expected decrease
 # Smallest pivots of normals scaled to a unit diagonal that can be solved, and that determine
-# the elements.
-_SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 1e-10
+# the elements (below the second, 0.2 px of noise turn an image by ten degrees and more).
+_SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 1e-6
 
 _HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-2
 _HUBER, _TUKEY = 1.345, 4.685  # 95 % efficiency on normal errors
@@ -399,28 +401,40 @@ def _least_squares(pair: _Pair, state: _Floats, last_step_px: float) -> tuple[in
     trial_normals, trial_gradient = np.empty((n, n)), np.empty(n)
     cost = _normals(pair, state, normals, gradient)
     n_points = len(pair.weights)
-    damping = 0.0
+    damping, growth = 0.0, 2.0  # as Nielsen (1999) proposes
     iteration, status = 0, NOT_CONVERGED
-    while iteration < _MAX_ITERATIONS and status == NOT_CONVERGED and damping < _MOST_DAMPING:
+    while iteration < _MAX_ITERATIONS and damping < _MOST_DAMPING:
         iteration += 1
-        lowered = False
-        if _solved(normals, gradient, damping, step) > 0.0:
+        if _solved(normals, gradient, 0.0, step) == 0.0:
+            _solved(normals, gradient, _FIRST_DAMPING, step)
+            damping = max(damping, _FIRST_DAMPING)
+        trial = _moved(state, pair.free, step)
+        last_decrease = max(last_step_px * last_step_px * n_points, _LAST_DECREASE * cost)
+        if -_sum_of_products(gradient, step) <= last_decrease:
+            _copy(trial, state)
+            status = CONVERGED
+            break
+        if damping > 0.0:
+            _solved(normals, gradient, damping, step)
             trial = _moved(state, pair.free, step)
-            decrease = -_sum_of_products(gradient, step)
-            if damping <= _FIRST_DAMPING and decrease <= last_step_px * last_step_px * n_points:
-                _copy(trial, state)
-                status = CONVERGED
-                continue
-            trial_cost = _normals(pair, trial, trial_normals, trial_gradient)
-            lowered = trial_cost <= (1.0 + _ROUNDING) * cost + _ROUNDING_PX2 * n_points
-        if lowered:
+        expected = -_sum_of_products(gradient, step)
+        trial_cost = _normals(pair, trial, trial_normals, trial_gradient)
+        rounding = _ROUNDING_PX * (np.sqrt(cost) + _ROUNDING_PX * n_points)
+        gain = (cost - trial_cost + rounding) / expected
+        if gain > 0.0:
+            damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
+            damping = damping if damping > _LEAST_DAMPING else 0.0
+            growth = 2.0
+        else:
+            damping *= growth
+            growth *= 2.0
+        if not gain > _POOR_GAIN:
+            damping = max(damping, _FIRST_DAMPING)
+        if gain > 0.0:
             _copy(trial, state)
             cost = trial_cost
             normals, trial_normals = trial_normals, normals
             gradient, trial_gradient = trial_gradient, gradient
-            damping = 0.1 * damping if damping > _LEAST_DAMPING else 0.0
-        else:
-            damping = max(10.0 * damping, _FIRST_DAMPING)
     if not _solved(normals, gradient, 0.0, step) > _RANK_PIVOT:
         status = RANK_DEFICIENT
     return status, iteration
