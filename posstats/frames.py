@@ -207,7 +207,7 @@ def _prime_meridian_deg(crs: str) -> float:
     return (
         0.0
         if meridian is None
-        else np.degrees(meridian.longitude * meridian.unit_conversion_factor)
+        else np.degrees(float(meridian.longitude) * float(meridian.unit_conversion_factor))
     )
 
 

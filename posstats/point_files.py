@@ -50,7 +50,7 @@ def read_tie_points(
     known = image >= 0
     camera = np.where(known, camera_of_image[np.maximum(image, 0)], -1)
     _refuse_outside(table, xy, camera, cameras, unit, findings)
-    order = np.lexsort((image, point))
+    order = np.argsort(point * (len(images) + 1) + image, kind="stable")
     _refuse_repeated(table, point_id, point[order], images, image[order], order, findings)
     if len(findings) > before:
         return None

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _SHOWN_TEXT = 60
+_HEADER_CHARACTERS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,8 @@ class Table:
     def require(self, names: Sequence[str], findings: list[str]) -> bool:
         """Whether all columns `names` are there; a finding for each that is not."""
         missing = [name for name in names if name not in self.columns]
+        if not missing:
+            return True
         head = self.file if self.content is None else f"{self.file}:{self._header_line}"
         there = ", ".join(self.columns)
         hint = "; are the columns separated by semicolons?" if ";" in there else ""
@@ -66,7 +69,7 @@ class Table:
             f"{head}, {name}: found no such column in {there}, expected it{hint}"
             for name in missing
         ]
-        return not missing
+        return False
 
     def ids(self, column: str, findings: list[str]) -> Any:
         """Arrow text array of a column of ids; integers of Parquet are taken as their digits."""
@@ -76,7 +79,7 @@ class Table:
             findings.append(f"{self.file}, {column}: found values of type {found}, expected text")
             return pa.array([""] * len(self), pa.string())
         values = pc.fill_null(values, "")
-        empty = np.flatnonzero(_as_numpy(pc.equal(pc.utf8_trim_whitespace(values), "")))
+        empty = np.flatnonzero(_as_numpy(pc.or_(pc.equal(values, ""), pc.utf8_is_space(values))))
         findings += [f"{self.place(row, column)}: found nothing, expected an id" for row in empty]
         return values
 
@@ -198,7 +201,7 @@ def decoded(file: str, content: bytes, findings: list[str]) -> str | None:
 def _header(file: str, text: str, findings: list[str]) -> list[str] | None:
     """Column names as they stand, or None with a finding if one stands twice."""
     try:
-        line, header = next(_records(text))
+        line, header = next(_records(text[:_HEADER_CHARACTERS]))
     except csv.Error as error:
         findings.append(f"{file}:1: found no header row ({error}), expected column names")
         return None
