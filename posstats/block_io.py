@@ -118,8 +118,7 @@ def _block(
     if rows is None or frame is None or (rows.camera < 0).any():
         return None
     orientations = pos_orientations(rows, settings, Convention.of_pos(settings, frame))
-    if not np.isnan(rows.position_crs).any():
-        refuse_outside_crs(rows.table, orientations.position_m, frame, findings)
+    refuse_outside_crs(rows.table, rows.position_crs, frame, findings, rows.row)
     adjusted = ground_points = None
     if "adjusted" in tables:
         convention = Convention.of_adjusted(settings, frame)

@@ -102,11 +102,10 @@ def read_ground_points(
     ]
     if len(findings) > before:
         return None
-    computing = frame.to_computing(position)
-    refuse_outside_crs(table, computing, frame, findings)
+    refuse_outside_crs(table, position, frame, findings)
     return GroundPoints(
         point[order],
-        computing[order],
+        frame.to_computing(position)[order],
         (role == "check")[order],
         sigma_xy[order],
         sigma_z[order],
@@ -114,12 +113,19 @@ def read_ground_points(
 
 
 def refuse_outside_crs(
-    table: Table, computing: _Floats, frame: GroundFrame, findings: list[str]
+    table: Table,
+    position_crs: _Floats,
+    frame: GroundFrame,
+    findings: list[str],
+    row_of_position: _Ints | None = None,
 ) -> None:
-    """A finding for every row whose position the crs (or the geoid grid) does not cover."""
+    """A finding for every position that the crs (or the geoid grid) does not cover."""
+    given = np.isfinite(position_crs).all(axis=1)
+    covered = np.isfinite(frame.to_computing(position_crs)).all(axis=1)
+    rows = np.arange(len(table)) if row_of_position is None else row_of_position
     findings += [
         f"{table.place(row, 'x')}: found a position outside {frame.crs}, expected one in its area"
-        for row in np.flatnonzero(np.isnan(computing).any(axis=1))
+        for row in rows[given & ~covered]
     ]
 
 

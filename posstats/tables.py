@@ -22,7 +22,7 @@ import pyarrow.parquet
 from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SHOWN_TEXT = 60
 _HEADER_CHARACTERS = 1_000_000
 
@@ -163,8 +163,11 @@ def sha256(content: bytes) -> str:
 
 
 def _read_csv(file: str, content: bytes, findings: list[str]) -> Table | None:
-    text = decoded(file, content, findings)
+    text = _decoded(file, content, findings)
     if text is None:
+        return None
+    if not text.strip():
+        findings.append(f"{file}: found an empty file, expected a table")
         return None
     header = _header(file, text, findings)
     if header is None:
@@ -183,7 +186,7 @@ def _read_csv(file: str, content: bytes, findings: list[str]) -> Table | None:
     return Table(file, sha256(content), _columns(table), text)
 
 
-def decoded(file: str, content: bytes, findings: list[str]) -> str | None:
+def _decoded(file: str, content: bytes, findings: list[str]) -> str | None:
     """UTF-8 text without byte order mark, or a finding."""
     try:
         text = content.decode("utf-8-sig")

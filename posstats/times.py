@@ -42,15 +42,14 @@ def read_times(table: Table, findings: list[str]) -> _Floats:
 def continuous_gps_seconds(seconds_of_week: _Floats) -> _Floats:
     """GPS seconds of week (n,) counted on over the end of the week.
 
-    In rows of flight order a step back of more than half a week is a new week. Rows in another
-    order (which then still step back) have no such steps to count: there, a pause of more than
-    half a week is the gap between the end of the block in the new week and its beginning in the
-    old one.
+    In rows of flight order a step back of more than half a week is a new week. In rows of another
+    order steps mean nothing: there, a gap of more than half a week in the sorted seconds lies
+    between the exposures of the new week and those of the old one.
     """
     steps_back = np.diff(seconds_of_week) < -0.5 * WEEK_S
     weeks = np.concatenate([[0], np.cumsum(steps_back)])
     continuous = seconds_of_week + WEEK_S * weeks
-    if not steps_back.any() or np.all(np.diff(continuous) >= 0.0):
+    if np.all(np.diff(continuous) >= 0.0):
         return continuous
     ascending = np.sort(seconds_of_week)
     widest = int(np.argmax(np.diff(ascending)))
