@@ -103,28 +103,41 @@ def _error_contrasts(
 
 
 def _likelihood(contrasts: _Contrasts, variance: _Floats) -> _Likelihood:
-    """Log-likelihood and derivatives; P = V^-1 of the contrasts by Woodbury's identity."""
+    """Log-likelihood and derivatives.
+
+    With W the inverse of the diagonal part and W^1/2 U = Q S R' the strips' singular values,
+    P = V^-1 = W^1/2 (I - Q diag(1 - keep) Q') W^1/2 with keep = 1 / (1 + s2_strip S^2): no
+    difference of large numbers, however much the strip effect exceeds the rest.
+    """
     white, strip = variance
     diagonal = contrasts.known + white
     if diagonal.min(initial=np.inf) <= 0.0:
         return _Likelihood(-np.inf, np.zeros(2), np.eye(2))
-    weight, u = 1.0 / diagonal, contrasts.strips
-    wu = weight[:, None] * u
-    inner = np.eye(u.shape[1]) + strip * (u.T @ wu)
-    inverse = np.linalg.inv(inner)
-    pu = wu @ inverse  # P U
-    py = weight * contrasts.y - strip * pu @ (wu.T @ contrasts.y)
-    upu = u.T @ pu
-    w2 = inverse @ (wu.T @ wu)
-    trace_p = weight.sum() - strip * np.trace(w2)
-    w3 = inverse @ (wu.T @ (weight[:, None] * wu))
-    trace_pp = (weight**2).sum() - 2.0 * strip * np.trace(w3) + strip**2 * np.sum(w2 * w2.T)
-    log_determinant = np.log(diagonal).sum() + np.linalg.slogdet(inner)[1]
-    cross = np.sum(pu**2)
+    weight = 1.0 / diagonal
+    root = np.sqrt(weight)
+    q, singular, _ = np.linalg.svd(root[:, None] * contrasts.strips, full_matrices=False)
+    inflation = 1.0 + strip * singular**2
+    keep, lost = 1.0 / inflation, strip * singular**2 / inflation
+    y = root * contrasts.y
+    along = q.T @ y
+    across = y - q @ along
+    py = root * (across + q @ (keep * along))
+    qwq = q.T @ (weight[:, None] * q)
+    trace_p = weight.sum() - lost @ np.diag(qwq)
+    trace_pp = (weight**2).sum() - 2.0 * lost @ (q**2).T @ weight**2 + lost @ qwq**2 @ lost
+    strip_information = singular**2 * keep
+    cross = np.diag(qwq) @ (singular * keep) ** 2
     return _Likelihood(
-        value=-0.5 * float(log_determinant + contrasts.y @ py),
-        score=0.5 * np.array([py @ py - trace_p, np.sum((u.T @ py) ** 2) - np.trace(upu)]),
-        information=0.5 * np.array([[trace_pp, cross], [cross, np.sum(upu**2)]]),
+        value=-0.5
+        * float(
+            np.log(diagonal).sum() + np.log(inflation).sum() + across @ across + keep @ along**2
+        ),
+        score=0.5
+        * np.array(
+            [py @ py - trace_p, np.sum((singular * keep * along) ** 2) - strip_information.sum()]
+        ),
+        information=0.5
+        * np.array([[trace_pp, cross], [cross, strip_information @ strip_information]]),
     )
 
 
