@@ -1,0 +1,274 @@
+"""Angle errors of the POS: what the recorded angles differ from the estimated ones.
+
+error = POS angle - estimated angle, per image. The estimate is the coplanarity adjustment of the
+block (`coplanarity_errors`) or an adjusted orientation that came with it (`adjusted_errors`).
+Errors live in the ground frame (omega, phi, kappa of the block's system) or in the camera frame
+(pitch, roll, yaw about image x, y, z: R_pos = R_estimated exp([e]x)).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.block import Block, Orientations
+from posstats.coplanarity_adjustment import AdjustedBlock, Priors, adjust
+from posstats.coplanarity_pairs import PointPairs, point_pairs
+from posstats.errors import GeometryError
+from posstats.observability import (
+    UNDETERMINED_SHARE,
+    EstimatedAngles,
+    Observability,
+    observability,
+)
+from posstats.rotation import (
+    rotation_derivatives,
+    rotation_from_angles,
+    skew,
+    vector_from_rotation,
+    wrapped,
+)
+from posstats.stereo import StereoModels, cross_strip_pairs, form_models
+
+_Floats = NDArray[np.float64]
+_Bools = NDArray[np.bool_]
+_Ids = NDArray[np.object_]
+
+SMALLEST_ANGLE_PRIOR_RAD = float(np.radians(1.0))
+ANGLE_PRIOR_FACTOR = 10.0
+_SHOWN_IMAGES = 10
+_SMALL_ANGLE_RAD = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class AngleErrors:
+    """Angle errors of n images.
+
+    Attributes
+    ----------
+    frame
+        ``ground``: omega, phi, kappa; ``camera``: pitch, roll, yaw.
+    source
+        ``coplanarity`` or ``adjusted``.
+    image, strip
+        (n,) ids.
+    time_s
+        (n,).
+    error_rad
+        (n, 3), NaN where there is no estimate.
+    covariance_rad2
+        (n, 3, n, 3) of all errors, NaN where there is no estimate; None for ``adjusted``.
+    used
+        (n,) false where the error is missing or not determined.
+    observability
+        Of the block, then of every strip; empty for ``adjusted``.
+    sigma0
+        Standard deviation of an image coordinate from the residuals, px; None for ``adjusted``,
+        NaN without redundancy.
+    warnings
+        Sentences for the report.
+    """
+
+    frame: Literal["ground", "camera"]
+    source: Literal["coplanarity", "adjusted"]
+    image: _Ids
+    strip: _Ids
+    time_s: _Floats
+    error_rad: _Floats
+    covariance_rad2: _Floats | None
+    used: _Bools
+    observability: tuple[Observability, ...] = ()
+    sigma0: float | None = None
+    warnings: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.image)
+
+    @property
+    def sigma_rad(self) -> _Floats:
+        """(n, 3) standard deviations; NaN where unknown."""
+        if self.covariance_rad2 is None:
+            return np.full(self.error_rad.shape, np.nan)
+        n = len(self)
+        return np.sqrt(np.diagonal(self.covariance_rad2.reshape(3 * n, 3 * n))).reshape(n, 3)
+
+
+def adjusted_errors(block: Block) -> AngleErrors:
+    """POS angles minus the angles of the block's adjusted orientation.
+
+    Raises
+    ------
+    GeometryError
+        If the block has no adjusted orientation.
+    """
+    if block.adjusted is None:
+        raise GeometryError(
+            f"block {block.name!r} has no adjusted orientation (adjusted.csv) to compare with"
+        )
+    pos = block.orientations
+    error = wrapped(pos.angles_rad - block.adjusted.angles_rad)
+    used = np.all(np.isfinite(error), axis=1)
+    return AngleErrors(
+        frame="ground",
+        source="adjusted",
+        image=pos.image,
+        strip=pos.strip,
+        time_s=pos.time_s,
+        error_rad=error,
+        covariance_rad2=None,
+        used=used,
+        warnings=_listed("have no adjusted orientation", pos.image[~used]),
+    )
+
+
+def coplanarity_errors(
+    block: Block,
+    models: StereoModels,
+    *,
+    robust: bool = True,
+    progress: Callable[[int, int], object] | None = None,
+) -> AngleErrors:
+    """Angle errors from the coplanarity adjustment of the whole block.
+
+    Parameters
+    ----------
+    block
+        Its check points take no part.
+    models
+        The stereo models of the block; pairs across strips are added here.
+    robust
+        Take out blunders; else plain least squares.
+    progress
+        Called as progress(done, total).
+
+    Raises
+    ------
+    GeometryError
+        If no pair of images has common points, or the block is too large.
+    ConvergenceError
+        If the adjustment does not settle.
+    """
+    pos = block.orientations
+    across = form_models(block, cross_strip_pairs(block))
+    pairs = point_pairs(block.tie_points, models, across)
+    if len(pairs.left_vectors) == 0:
+        raise GeometryError("no pair of images has common tie points: angle errors need them")
+    priors = Priors(
+        angles_rad=pos.angles_rad,
+        position_m=pos.position_m,
+        sigma_angles_rad=np.maximum(
+            SMALLEST_ANGLE_PRIOR_RAD, ANGLE_PRIOR_FACTOR * pos.sigma_angles_rad
+        ),
+        sigma_position_m=pos.sigma_position_m,
+        system=pos.system,
+        image_px=block.accuracy.image_px,
+    )
+    return _errors(pos, pairs, priors, adjust(pairs, priors, robust=robust, progress=progress))
+
+
+def _errors(
+    pos: Orientations, pairs: PointPairs, priors: Priors, adjusted: AdjustedBlock
+) -> AngleErrors:
+    n = len(pos)
+    tied = np.zeros(n, dtype=bool)
+    tied[pairs.left] = tied[pairs.right] = True
+    error = wrapped(pos.angles_rad - adjusted.angles_rad)
+    covariance = adjusted.covariance_rad2.copy()
+    variance = np.diagonal(covariance.reshape(3 * n, 3 * n)).reshape(n, 3)
+    limit = UNDETERMINED_SHARE * priors.sigma_angles_rad
+    determined = tied & np.all(variance <= limit**2, axis=1)
+    found = observability(
+        EstimatedAngles(
+            image=pos.image,
+            strip=pos.strip,
+            position_m=pos.position_m,
+            rotation_covariance_rad2=_about_ground_axes(covariance, adjusted.angles_rad, pos),
+            prior_sigma_rad=priors.sigma_angles_rad.min(axis=1),
+            determined=determined,
+            tied=tied,
+        )
+    )
+    error[~tied] = np.nan
+    covariance[~tied] = np.nan
+    covariance[:, :, ~tied] = np.nan
+    return AngleErrors(
+        frame="ground",
+        source="coplanarity",
+        image=pos.image,
+        strip=pos.strip,
+        time_s=pos.time_s,
+        error_rad=error,
+        covariance_rad2=covariance,
+        used=determined,
+        observability=found,
+        sigma0=adjusted.sigma_px,
+        warnings=(
+            *_listed("have no tie points in common with another image", pos.image[~tied]),
+            *_listed("have undetermined angles", pos.image[tied & ~determined]),
+        ),
+    )
+
+
+def _listed(what: str, images: _Ids) -> tuple[str, ...]:
+    """One sentence that names the images, or none."""
+    if len(images) == 0:
+        return ()
+    shown = ", ".join(images[:_SHOWN_IMAGES])
+    more = f" and {len(images) - _SHOWN_IMAGES} more" if len(images) > _SHOWN_IMAGES else ""
+    count = f"{len(images)} images" if len(images) > 1 else "1 image"
+    return (f"{count} {what}: {shown}{more}",)
+
+
+def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErrors:
+    """The same errors as pitch, roll, yaw: e with R_pos = R_estimated exp([e]x).
+
+    Parameters
+    ----------
+    errors
+        In the ground frame.
+    orientations
+        The POS orientations that the errors belong to.
+    """
+    pos, system = orientations.angles_rad, orientations.system
+    estimated = pos - errors.error_rad
+    image_from_ground = np.swapaxes(rotation_from_angles(estimated, system), -1, -2)
+    error = vector_from_rotation(image_from_ground @ rotation_from_angles(pos, system))
+    covariance = errors.covariance_rad2
+    if covariance is not None:
+        turn = _inverse_left_jacobian(error) @ _about_image_axes(estimated, orientations)
+        covariance = np.einsum("iab,ibjc,jdc->iajd", turn, covariance, turn, optimize=True)
+    return replace(errors, frame="camera", error_rad=error, covariance_rad2=covariance)
+
+
+def _about_image_axes(angles_rad: _Floats, orientations: Orientations) -> _Floats:
+    """(n, 3, 3) A with R(angles + d) = R(angles) exp([A d]x) to first order."""
+    system = orientations.system
+    image_from_ground = np.swapaxes(rotation_from_angles(angles_rad, system), -1, -2)
+    generators = image_from_ground[:, None] @ rotation_derivatives(angles_rad, system)
+    columns = [generators[..., 2, 1], generators[..., 0, 2], generators[..., 1, 0]]
+    return np.stack(columns, axis=1)
+
+
+def _about_ground_axes(
+    covariance_rad2: _Floats, angles_rad: _Floats, orientations: Orientations
+) -> _Floats:
+    """Covariance (n, 3, n, 3) of small rotations about the ground axes, from that of angles."""
+    rotation = rotation_from_angles(angles_rad, orientations.system)
+    turn = rotation @ _about_image_axes(angles_rad, orientations)
+    return np.einsum("iab,ibjc,jdc->iajd", turn, covariance_rad2, turn, optimize=True)
+
+
+def _inverse_left_jacobian(vector_rad: _Floats) -> _Floats:
+    """(n, 3, 3) B with log(exp([d]x) exp([e]x)) = e + B d to first order, e (n, 3).
+
+    B = I - [e]x / 2 + (1 - (t / 2) cot(t / 2)) / t^2 [e]x^2, t = |e|.
+    """
+    half = 0.5 * np.linalg.norm(vector_rad, axis=-1)[:, None, None]
+    safe = np.where(half < _SMALL_ANGLE_RAD, 1.0, half)
+    exact = (1.0 - safe / np.tan(safe)) / (4.0 * safe**2)
+    factor = np.where(half < _SMALL_ANGLE_RAD, 1.0 / 12.0 + half**2 / 180.0, exact)
+    generator = skew(vector_rad)
+    jacobian: _Floats = np.eye(3) - 0.5 * generator + factor * (generator @ generator)
+    return jacobian

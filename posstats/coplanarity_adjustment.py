@@ -1,0 +1,315 @@
+"""Least-squares adjustment of a whole block by coplanarity, without object points; on arrays.
+
+Unknown are three angles and three coordinates of every image. Observations are the y-parallaxes
+q of point pairs; positions and, weakly, angles are observed as well (priors).
+
+A point seen in n images makes up to n(n-1)/2 pairs but has 2n - 3 degrees of freedom; how its
+observations are weighted, and why the covariance is still right, stands in `coplanarity_normals`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.coplanarity import base_frames, y_parallax_derivatives
+from posstats.coplanarity_normals import accumulate_normals, precision
+from posstats.coplanarity_pairs import PointPairs
+from posstats.errors import ConvergenceError, GeometryError
+from posstats.least_squares import factorised, propagated
+from posstats.rotation import AngleSystem, rotation_derivatives, rotation_from_angles
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+MAX_IMAGES = 1500  # five dense matrices of (6 n)^2 numbers: 3.2 GB
+MAX_ITERATIONS = 60
+_HUBER = 1.345
+_REJECTION = 3.5
+_NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
+_LARGEST_STEP_RAD = 0.2
+_Phase = Literal["reweight", "plain", "fixed"]
+_NEXT: dict[_Phase, _Phase] = {"reweight": "plain", "plain": "fixed", "fixed": "fixed"}
+# A phase has settled when the mean square step, in standard errors, falls below:
+_SETTLED: dict[_Phase, float] = {"reweight": 1e-2, "plain": 1e-3, "fixed": 1e-10}
+_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
+
+
+@dataclass(frozen=True, eq=False)
+class Priors:
+    """What is known beforehand of n images.
+
+    Attributes
+    ----------
+    angles_rad, position_m
+        (n, 3) POS angles and projection centres, ground frame.
+    sigma_angles_rad, sigma_position_m
+        (n, 3) standard deviations.
+    system
+        Of the angles.
+    image_px
+        Stated standard deviation of an image coordinate; sets the smallest noise believed.
+    """
+
+    angles_rad: _Floats
+    position_m: _Floats
+    sigma_angles_rad: _Floats
+    sigma_position_m: _Floats
+    system: AngleSystem
+    image_px: float
+
+    @property
+    def values(self) -> _Floats:
+        """(6 n,) unknowns, per image three angles and three coordinates."""
+        return np.concatenate([self.angles_rad, self.position_m], axis=1).ravel()
+
+    @property
+    def weights(self) -> _Floats:
+        """(6 n,)."""
+        sigma = np.concatenate([self.sigma_angles_rad, self.sigma_position_m], axis=1)
+        return (1.0 / sigma**2).ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class AdjustedBlock:
+    """Result of the adjustment of n images.
+
+    Attributes
+    ----------
+    angles_rad, position_m
+        (n, 3) estimates.
+    covariance_rad2
+        (n, 3, n, 3) of the angles, marginal over the positions.
+    sigma_px
+        Standard deviation of an image coordinate, from the residuals; NaN without redundancy.
+    rejected
+        (N,) point pairs taken out as blunders.
+    n_iterations
+        Number of linearisations.
+    """
+
+    angles_rad: _Floats
+    position_m: _Floats
+    covariance_rad2: _Floats
+    sigma_px: float
+    rejected: NDArray[np.bool_]
+    n_iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Linearised:
+    """q and its derivatives, (N, ...), px, px/rad, px/m, px/px."""
+
+    q: _Floats
+    by_left_angles: _Floats
+    by_right_angles: _Floats
+    by_base: _Floats
+    by_image: _Floats
+
+    @property
+    def variance(self) -> _Floats:
+        """(N,) variance of q per unit variance of an image coordinate: diag(D D')."""
+        variance: _Floats = np.einsum("ij,ij->i", self.by_image, self.by_image)
+        return variance
+
+
+def linearised(
+    pairs: PointPairs, unknowns: _Floats, frames: _Floats, system: AngleSystem
+) -> _Linearised:
+    """Y-parallaxes and derivatives at `unknowns` (n, 6).
+
+    The parallax is measured in `frames` (p, 3, 3), base_from_ground, which stay those of the
+    POS bases: so the derivatives are exact, also where q is not yet zero.
+    """
+    rotation = rotation_from_angles(unknowns[:, :3], system)
+    derivative = rotation_derivatives(unknowns[:, :3], system)
+    base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
+    q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
+        pairs.left_vectors,
+        pairs.right_vectors,
+        pairs.offsets,
+        frames @ rotation[pairs.left],
+        frames @ rotation[pairs.right],
+        frames[:, None] @ derivative[pairs.left],
+        frames[:, None] @ derivative[pairs.right],
+        np.einsum("pij,pj->pi", frames, base),
+    )
+    frame = np.repeat(frames, np.diff(pairs.offsets), axis=0)
+    return _Linearised(q, by_left, by_right, np.einsum("ni,nij->nj", by_base, frame), by_image)
+
+
+def adjust(
+    pairs: PointPairs,
+    priors: Priors,
+    *,
+    robust: bool = True,
+    progress: Callable[[int, int], object] | None = None,
+) -> AdjustedBlock:
+    """Adjust the block: Gauss-Newton from the priors.
+
+    The robust solution reweights after Huber until it settles, then takes out pairs beyond
+    3.5 standard deviations (median absolute deviation), fixes that choice and converges as
+    least squares, so that its covariance is that of least squares of the pairs kept.
+
+    Raises
+    ------
+    ConvergenceError
+        If it does not settle in `MAX_ITERATIONS` steps, or parallaxes become infinite.
+    GeometryError
+        If the block has more than `MAX_IMAGES` images.
+    """
+    n_images = len(priors.angles_rad)
+    if n_images > MAX_IMAGES:
+        raise GeometryError(
+            f"the coplanarity adjustment takes at most {MAX_IMAGES} images at once, the block has"
+            f" {n_images}: divide it, or use an adjusted orientation as the source of the errors"
+        )
+    frames = base_frames(priors.position_m[pairs.right] - priors.position_m[pairs.left])
+    weighting = _Weighting(
+        "reweight" if robust else "plain", robust, np.ones(len(pairs.left_vectors))
+    )
+    unknowns = priors.values
+    for count in range(1, MAX_ITERATIONS + 1):
+        observed = _finite(linearised(pairs, unknowns.reshape(-1, 6), frames, priors.system))
+        weighting = weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
+        normals = _normal_equations(pairs, observed, weighting, priors)
+        step, decrement = _step(normals, priors.weights * (unknowns - priors.values))
+        unknowns = unknowns + step
+        if progress is not None:
+            progress(count, MAX_ITERATIONS)
+        if weighting.phase == "fixed" and decrement < _SETTLED["fixed"]:
+            return _result(pairs, priors, unknowns, frames, weighting, count)
+        weighting = weighting.advanced(decrement)
+    raise ConvergenceError(
+        f"the coplanarity adjustment did not settle in {MAX_ITERATIONS} steps (y-parallax still"
+        f" {weighting.scale_px:.3g} px): check the angles, their system and the strips"
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Weighting:
+    """Robust weights (N,) and scale of the standardised parallaxes in a phase of the iteration."""
+
+    phase: _Phase
+    robust: bool
+    robust_weight: _Floats
+    scale_px: float = float("nan")
+
+    def updated(self, observed: _Linearised, smallest_px: float) -> "_Weighting":
+        """Weights for the residuals at hand; unchanged in the phase ``fixed``."""
+        if self.phase == "fixed":
+            return self
+        standardised = np.abs(observed.q) / np.sqrt(observed.variance)
+        spread = max(_NORMAL_MAD * float(np.median(standardised)), smallest_px)
+        weight = np.ones_like(standardised)
+        if self.phase == "reweight":
+            weight = np.minimum(1.0, _HUBER * spread / np.maximum(standardised, smallest_px))
+            return replace(self, robust_weight=weight, scale_px=spread)
+        if self.robust:
+            weight = (standardised <= _REJECTION * spread).astype(float)
+        scale = float(np.sqrt(np.average(standardised**2, weights=weight)))
+        return replace(self, robust_weight=weight, scale_px=max(scale, smallest_px))
+
+    def advanced(self, decrement: float) -> "_Weighting":
+        """The next phase, if this one has settled."""
+        if decrement > _SETTLED[self.phase]:
+            return self
+        return replace(self, phase=_NEXT[self.phase])
+
+
+def _finite(observed: _Linearised) -> _Linearised:
+    if not np.all(np.isfinite(observed.q)):
+        raise ConvergenceError(
+            "the coplanarity adjustment left the geometry of vertical photographs (infinite"
+            " y-parallax): check the angles, their system and the positions"
+        )
+    return observed
+
+
+@dataclass(frozen=True, eq=False)
+class _Normals:
+    """N with the priors (both triangles only in M), J'Wq, M, v'Wv, tr(W D D')."""
+
+    normals: _Floats
+    right_side: _Floats
+    noise_normals: _Floats
+    square_sum: float
+    noise_trace: float
+
+
+def _normal_equations(
+    pairs: PointPairs,
+    observed: _Linearised,
+    weighting: _Weighting,
+    priors: Priors,
+    *,
+    with_noise: bool = False,
+) -> _Normals:
+    size = priors.values.size
+    normals, right_side = np.zeros((size, size)), np.zeros(size)
+    noise_normals = np.zeros((size, size) if with_noise else (0, 0))
+    square_sum, noise_trace = accumulate_normals(
+        observed.q,
+        observed.by_left_angles,
+        observed.by_right_angles,
+        observed.by_base,
+        observed.by_image,
+        precision(observed.variance, weighting.robust_weight),
+        pairs.left_ray,
+        pairs.right_ray,
+        pairs.by_point,
+        pairs.point_offsets,
+        pairs.first_ray,
+        pairs.n_rays,
+        pairs.ray_image,
+        normals,
+        right_side,
+        noise_normals,
+    )
+    weight = 1.0 / weighting.scale_px**2
+    normals *= weight
+    normals[np.diag_indices(size)] += priors.weights
+    noise_normals *= weight**2
+    mirrored = noise_normals + np.triu(noise_normals, 1).T
+    return _Normals(
+        normals, weight * right_side, mirrored, weight * square_sum, weight * noise_trace
+    )
+
+
+def _step(equations: _Normals, prior_side: _Floats) -> tuple[_Floats, float]:
+    """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
+    right_side = -(equations.right_side + prior_side)
+    step = factorised(equations.normals).solve(right_side)
+    decrement = float(step @ right_side) / step.size
+    largest = float(np.abs(step.reshape(-1, 6)[:, :3]).max())
+    return step * min(1.0, _LARGEST_STEP_RAD / max(largest, 1e-300)), decrement
+
+
+def _result(
+    pairs: PointPairs,
+    priors: Priors,
+    unknowns: _Floats,
+    frames: _Floats,
+    weighting: _Weighting,
+    count: int,
+) -> AdjustedBlock:
+    observed = linearised(pairs, unknowns.reshape(-1, 6), frames, priors.system)
+    equations = _normal_equations(pairs, observed, weighting, priors, with_noise=True)
+    propagation = propagated(
+        factorised(equations.normals), equations.noise_normals, priors.weights
+    )
+    sigma2 = propagation.variance_factor(equations.square_sum, equations.noise_trace)
+    n = len(priors.angles_rad)
+    angles = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()
+    believed = priors.image_px**2 if np.isnan(sigma2) else sigma2
+    estimate = unknowns.reshape(n, 6)
+    return AdjustedBlock(
+        angles_rad=estimate[:, :3],
+        position_m=estimate[:, 3:],
+        covariance_rad2=propagation.covariance(believed, angles).reshape(n, 3, n, 3),
+        sigma_px=float(np.sqrt(sigma2)),
+        rejected=weighting.robust_weight == 0.0,
+        n_iterations=count,
+    )

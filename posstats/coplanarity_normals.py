@@ -1,0 +1,235 @@
+"""Normal equations of y-parallaxes with the covariance that pairs of one point share; compiled.
+
+A point seen in n images makes up to n(n-1)/2 pairs but has 2n - 3 degrees of freedom: its q
+share the noise of its n image points, cov q = sigma^2 D D' with D = dq/d(image coordinates).
+Each point's weight matrix is therefore
+
+    W = (D D' + L)^-1,   L = diag(d (1/w - 1 + RIDGE)),   d = diag(D D'),
+
+where w is the robust weight of each pair (w = 0 takes the pair out exactly). D D' is singular at
+the solution, so a small independent noise (RIDGE) keeps W regular; the covariance of the
+unknowns is right for this W all the same (`least_squares.Propagation`).
+
+By Woodbury's identity nothing of the size of the number of pairs is inverted: with
+E = D'L^-1 D, H = D'L^-1 J and g = D'L^-1 q (2n rows each) and the Cholesky factor C C' = I + E,
+
+    G = D'WJ = (I + E)^-1 H,                 J'WJ = J'L^-1 J - (C^-1 H)'(C^-1 H),
+    J'Wq = J'L^-1 q - (C^-1 H)'(C^-1 g),     q'Wq = q'L^-1 q - |C^-1 g|^2,
+    tr(W D D') = tr((I + E)^-1 E) = 2n - |C^-1|^2.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.compiled import inner_kernel, kernel
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+RIDGE = 0.05
+
+
+def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
+    """(N,) diagonal of L^-1 from d = diag(D D') (N,) and the robust weights (N,) in [0, 1]."""
+    result: _Floats = robust_weight / (variance * (1.0 - robust_weight * (1.0 - RIDGE)))
+    return result
+
+
+@inner_kernel
+def _add_pair(
+    k: int,
+    left: int,
+    right: int,
+    weight: float,
+    q: float,
+    row: _Floats,
+    by_image: _Floats,
+    normals: _Floats,
+    right_side: _Floats,
+    noise: _Floats,
+    shared: _Floats,
+) -> None:
+    """Add one pair to J'L^-1 J, J'L^-1 q (local), E and [H g] (shared).
+
+    `left`, `right` are the places of its rays in the point; `row` (12,) is its row of J.
+    """
+    last = shared.shape[1] - 1
+    for i in range(12):
+        at = 6 * left + i if i < 6 else 6 * right + i - 6
+        scaled = weight * row[i]
+        right_side[at] += scaled * q
+        for j in range(6):
+            normals[at, 6 * left + j] += scaled * row[j]
+            normals[at, 6 * right + j] += scaled * row[6 + j]
+        for r in range(2):
+            shared[2 * left + r, at] += scaled * by_image[k, r]
+            shared[2 * right + r, at] += scaled * by_image[k, 2 + r]
+    for i in range(4):
+        at = 2 * left + i if i < 2 else 2 * right + i - 2
+        scaled = weight * by_image[k, i]
+        shared[at, last] += scaled * q
+        for j in range(2):
+            noise[at, 2 * left + j] += scaled * by_image[k, j]
+            noise[at, 2 * right + j] += scaled * by_image[k, 2 + j]
+
+
+@inner_kernel
+def _factorise(matrix: _Floats, n: int) -> None:
+    """Lower Cholesky factor of the leading (n, n) part, in place."""
+    for j in range(n):
+        for k in range(j):
+            matrix[j, j] -= matrix[j, k] * matrix[j, k]
+        matrix[j, j] = np.sqrt(matrix[j, j])
+        for i in range(j + 1, n):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] /= matrix[j, j]
+
+
+@inner_kernel
+def _solve_lower(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
+    """C^-1 rows, in place; rows (n, width) leading part."""
+    for i in range(n):
+        for k in range(i):
+            f = factor[i, k]
+            for j in range(width):
+                rows[i, j] -= f * rows[k, j]
+        f = 1.0 / factor[i, i]
+        for j in range(width):
+            rows[i, j] *= f
+
+
+@inner_kernel
+def _solve_upper(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
+    """C'^-1 rows, in place; rows (n, width) leading part."""
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            f = factor[k, i]
+            for j in range(width):
+                rows[i, j] -= f * rows[k, j]
+        f = 1.0 / factor[i, i]
+        for j in range(width):
+            rows[i, j] *= f
+
+
+@inner_kernel
+def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
+    """|C^-1|^2, the trace of (C C')^-1; work (n,)."""
+    total = 0.0
+    for column in range(n):
+        for i in range(column, n):
+            value = 1.0 if i == column else 0.0
+            for k in range(column, i):
+                value -= factor[i, k] * work[k]
+            work[i] = value / factor[i, i]
+            total += work[i] * work[i]
+    return total
+
+
+@inner_kernel
+def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
+    """Upper triangle of matrix += sign rows' rows; rows (n, width) leading part."""
+    for r in range(n):
+        for i in range(width):
+            f = sign * rows[r, i]
+            for j in range(i, width):
+                matrix[i, j] += f * rows[r, j]
+
+
+@inner_kernel
+def _scatter(local: _Floats, images: _Ints, matrix: _Floats) -> None:
+    """Add the upper triangle of a point's (6 n, 6 n) matrix to the block's."""
+    for i in range(images.shape[0]):
+        for j in range(i, images.shape[0]):
+            for a in range(6):
+                for b in range(a if i == j else 0, 6):
+                    matrix[6 * images[i] + a, 6 * images[j] + b] += local[6 * i + a, 6 * j + b]
+
+
+@kernel
+def accumulate_normals(
+    q: _Floats,
+    by_left_angles: _Floats,
+    by_right_angles: _Floats,
+    by_base: _Floats,
+    by_image: _Floats,
+    pair_precision: _Floats,
+    left_ray: _Ints,
+    right_ray: _Ints,
+    by_point: _Ints,
+    point_offsets: _Ints,
+    first_ray: _Ints,
+    n_rays: _Ints,
+    ray_image: _Ints,
+    normals: _Floats,
+    right_side: _Floats,
+    noise_normals: _Floats,
+) -> tuple[float, float]:
+    """Add the point pairs of a block to its normal equations, point by point.
+
+    Parameters
+    ----------
+    q, by_left_angles, by_right_angles, by_base, by_image
+        (N,), (N, 3), (N, 3), (N, 3), (N, 4): parallax and derivatives, the base in the ground
+        frame.
+    pair_precision
+        (N,) from `precision`.
+    left_ray, right_ray, by_point, point_offsets, first_ray, n_rays, ray_image
+        As in `coplanarity_pairs.PointPairs`.
+    normals, right_side
+        (6 n, 6 n), (6 n,): J'WJ (upper triangle) and J'Wq are added; per image three angles,
+        then three coordinates.
+    noise_normals
+        (6 n, 6 n): M = G'G (upper triangle) is added, or (0, 0): not wanted.
+
+    Returns
+    -------
+    square_sum, noise_trace
+        q'Wq and tr(W D D') (0 where `noise_normals` is not wanted).
+    """
+    with_noise = noise_normals.shape[0] > 0
+    most = n_rays.max()
+    local_store = np.empty((6 * most, 6 * most))
+    shared_store = np.empty((2 * most, 6 * most + 1))
+    noise_store = np.empty((2 * most, 2 * most))
+    right_store, row, work = np.empty(6 * most), np.empty(12), np.empty(2 * most)
+    square_sum = noise_trace = 0.0
+    for point in range(first_ray.shape[0]):
+        first, n = first_ray[point], n_rays[point]
+        local, noise = local_store[: 6 * n, : 6 * n], noise_store[: 2 * n, : 2 * n]
+        shared, right = shared_store[: 2 * n, : 6 * n + 1], right_store[: 6 * n]
+        local[:] = 0.0
+        noise[:] = 0.0
+        shared[:] = 0.0
+        right[:] = 0.0
+        for i in range(2 * n):
+            noise[i, i] = 1.0
+        for place in range(point_offsets[point], point_offsets[point + 1]):
+            k = by_point[place]
+            for i in range(3):
+                row[i], row[6 + i] = by_left_angles[k, i], by_right_angles[k, i]
+                row[3 + i], row[9 + i] = -by_base[k, i], by_base[k, i]
+            _add_pair(
+                k, left_ray[k] - first, right_ray[k] - first, pair_precision[k], q[k], row,
+                by_image, local, right, noise, shared,
+            )  # fmt: skip
+            square_sum += pair_precision[k] * q[k] * q[k]
+        images = ray_image[first : first + n]
+        _factorise(noise, 2 * n)
+        _solve_lower(noise, 2 * n, shared, 6 * n + 1)
+        _add_products(shared, 2 * n, 6 * n, local, -1.0)
+        _scatter(local, images, normals)
+        for r in range(2 * n):
+            projected = shared[r, 6 * n]
+            square_sum -= projected * projected
+            for i in range(6 * n):
+                right[i] -= shared[r, i] * projected
+        for i in range(6 * n):
+            right_side[6 * images[i // 6] + i % 6] += right[i]
+        if with_noise:
+            noise_trace += 2 * n - _inverse_square_sum(noise, 2 * n, work)
+            _solve_upper(noise, 2 * n, shared, 6 * n)
+            local[:] = 0.0
+            _add_products(shared, 2 * n, 6 * n, local, 1.0)
+            _scatter(local, images, noise_normals)
+    return square_sum, noise_trace

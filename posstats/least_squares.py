@@ -1,0 +1,126 @@
+"""Least squares on normal equations: solution, error propagation, variance factor.
+
+The observations l are residual functions of the unknowns, linearised as J, of weights W that
+need not be the inverse of their covariance sigma^2 D D' (D: derivatives with respect to the
+independent measurements of standard deviation sigma). With prior weights P of the unknowns,
+
+    N = J'WJ + P,   M = G'G with G = D'WJ,   covariance = N^-1 (sigma^2 M + P) N^-1,
+
+which is right whatever W is, and (J'WJ / sigma^2 + P)^-1 if W is the inverse of D D'.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from posstats.errors import GeometryError
+
+_Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class NormalsFactor:
+    """Cholesky factor of normal equations N = U'U; `upper` (u, u)."""
+
+    upper: _Floats
+
+    def solve(self, right_side: _Floats) -> _Floats:
+        """N^-1 right_side, (u,) or (u, k)."""
+        solution, _ = lapack.dpotrs(self.upper, right_side)
+        return np.asarray(solution, dtype=float)
+
+    def inverse(self) -> _Floats:
+        """N^-1 (u, u), both triangles."""
+        inverse, _ = lapack.dpotri(self.upper)
+        triangle: _Floats = np.triu(inverse)
+        triangle += np.triu(inverse, 1).T
+        return triangle
+
+
+def factorised(normals: _Floats) -> NormalsFactor:
+    """Factorise normal equations (u, u), of which the upper triangle is read.
+
+    Raises
+    ------
+    GeometryError
+        If they are singular or not finite: some unknown is not determined.
+    """
+    upper, info = lapack.dpotrf(normals, lower=0)
+    if info != 0 or not np.all(np.isfinite(np.diagonal(upper))):
+        raise GeometryError("the normal equations are singular: an unknown is not determined")
+    return NormalsFactor(upper)
+
+
+@dataclass(frozen=True, eq=False)
+class Propagation:
+    """How measurement noise and prior errors reach the unknowns.
+
+    Attributes
+    ----------
+    inverse
+        (u, u) N^-1.
+    prior_weights
+        (u,) diagonal of P.
+    noise_cofactors
+        (u, u) N^-1 M N^-1: covariance per unit of sigma^2 caused by the measurements.
+    noise_in_normals
+        tr(N^-1 M).
+    """
+
+    inverse: _Floats
+    prior_weights: _Floats
+    noise_cofactors: _Floats
+    noise_in_normals: float
+
+    def variance_factor(self, weighted_square_sum: float, noise_trace: float) -> float:
+        """sigma^2 from the residuals v, by the exact expectation of v'Wv.
+
+        E[v'Wv] = sigma^2 [tr(W D D') - 2 tr(N^-1 M) + tr(N^-1 J'WJ N^-1 M)]
+        + tr(N^-1 J'WJ N^-1 P), where J'WJ = N - P. NaN without redundancy.
+
+        Parameters
+        ----------
+        weighted_square_sum
+            v'Wv.
+        noise_trace
+            tr(W D D').
+        """
+        p = self.prior_weights
+        prior_in_noise = float(p @ np.diagonal(self.noise_cofactors))
+        redundancy = noise_trace - self.noise_in_normals - prior_in_noise
+        prior_part = float(p @ np.diagonal(self.inverse) - p @ (self.inverse**2 @ p))
+        if redundancy <= 1e-9 * noise_trace:
+            return float("nan")
+        return max(weighted_square_sum - prior_part, 0.0) / redundancy
+
+    def covariance(self, sigma2: float, unknowns: NDArray[np.intp]) -> _Floats:
+        """Covariance (k, k) of some unknowns (indices, (k,)), the others marginal."""
+        rows = self.inverse[unknowns]
+        noise: _Floats = self.noise_cofactors[np.ix_(unknowns, unknowns)]
+        covariance: _Floats = sigma2 * noise + (rows * self.prior_weights) @ rows.T
+        return covariance
+
+
+def propagated(
+    factor: NormalsFactor, noise_normals: _Floats, prior_weights: _Floats
+) -> Propagation:
+    """Error propagation through a solution.
+
+    Parameters
+    ----------
+    factor
+        Of N = J'WJ + diag(prior_weights).
+    noise_normals
+        (u, u) M = G'G, both triangles.
+    prior_weights
+        (u,).
+    """
+    inverse = factor.inverse()
+    return Propagation(
+        inverse=inverse,
+        prior_weights=prior_weights,
+        noise_cofactors=inverse @ noise_normals @ inverse,
+        noise_in_normals=float(np.vdot(inverse, noise_normals)),
+    )
