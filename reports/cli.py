@@ -106,7 +106,8 @@ def analyse(
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
     from posstats.analysis import Settings
-    from posstats.reports.commands import analyse_block
+
+    from .analyse_command import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
     for line in analyse_block(block, out or _default_out(block), settings, pdf=not no_pdf):
@@ -127,7 +128,7 @@ def simulate(scenario: Path, out: Path, seed: int | None) -> None:
     Example:
       posstats simulate --scenario area1-small.toml --out block --seed 7
     """
-    from posstats.reports.commands import simulate_block
+    from .block_commands import simulate_block
 
     for line in simulate_block(scenario, out, seed):
         click.echo(line)
@@ -145,7 +146,7 @@ def check(block: Path) -> None:
     Example:
       posstats check flight7
     """
-    from posstats.reports.commands import check_block
+    from .block_commands import check_block
 
     for line in check_block(block):
         click.echo(line)
