@@ -1,0 +1,156 @@
+"""The look of every figure, and its SVG text: vectors, text as text, ids of its own, same bytes."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
+
+from . import format as fmt
+from .svg import embeddable
+
+# Okabe & Ito (2008), "Color Universal Design": told apart by colour-blind readers; the markers
+# and hatches beside them carry the same distinction in grey print.
+BLACK = "#1c2430"
+BLUE = "#0072B2"
+ORANGE = "#E69F00"
+GREEN = "#009E73"
+VERMILLION = "#D55E00"
+PURPLE = "#CC79A7"
+SKY = "#56B4E9"
+GREY = "#6b7480"
+LIGHT = "#d5dae0"
+
+WIDTH_IN = 6.7  # 170 mm: the text width of A4
+TICK_COUNT = 6
+
+STRIP_COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
+STRIP_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+
+_RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.0,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8.0,
+    "axes.edgecolor": GREY,
+    "axes.linewidth": 0.7,
+    "axes.labelcolor": BLACK,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.unicode_minus": True,
+    "text.color": BLACK,
+    "text.parse_math": False,  # an id such as a$b$ is no formula
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": BLACK,
+    "ytick.labelcolor": BLACK,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "grid.color": LIGHT,
+    "grid.linewidth": 0.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "hatch.linewidth": 0.5,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "posstats",
+}
+_NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A finished figure: `name` is its identifier, `title` its alternative text."""
+
+    name: str
+    title: str
+    caption: str
+    svg: str
+
+
+def style() -> Any:
+    """Context in which figures are made: the settings of the house, and no others."""
+    settings: dict[Any, Any] = {**matplotlib.rcParamsDefault, **_RC}
+    return matplotlib.rc_context(settings)
+
+
+def new_figure(height_in: float, width_in: float = WIDTH_IN) -> Figure:
+    """An empty figure of the text's width, laid out without overlaps."""
+    return Figure(figsize=(width_in, height_in), layout="constrained")
+
+
+def finish(figure: Figure, name: str, title: str, caption: str) -> Drawing:
+    """Draw a figure as SVG that can stand in a page beside others.
+
+    Texts stay texts; `title` becomes the alternative text.
+    """
+    _plain_text(figure)
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", metadata=_NO_METADATA)
+    share = figure.get_figwidth() / WIDTH_IN
+    return Drawing(name, title, caption, embeddable(stream.getvalue(), name, title, share))
+
+
+def _plain_text(figure: Figure) -> None:
+    """Ids are shown as they are, wherever a text was made before the setting took hold."""
+    for artist in figure.findobj(Text):
+        artist.set_parse_math(False)
+
+
+def strip_style(strips: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Colour and marker of each strip; no two of the first 49 strips share both."""
+    n_colours, n_markers = len(STRIP_COLOURS), len(STRIP_MARKERS)
+    return {
+        strip: (
+            STRIP_COLOURS[k % n_colours],
+            STRIP_MARKERS[(k + k // n_colours) % n_markers],
+        )
+        for k, strip in enumerate(strips)
+    }
+
+
+def log_axis(axis: Axes, values: Sequence[float]) -> None:
+    """Logarithmic y-axis with plain numbers on 1, 2 and 5 (1 alone over many decades)."""
+    axis.set_yscale("log")
+    low, high = min(values), max(values)
+    axis.set_ylim(low / 1.5, high * 1.5)
+    wide = high / low > 3e3
+    axis.yaxis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0), numticks=20))
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: fmt.number(value, 1)))
+    axis.yaxis.set_minor_formatter(NullFormatter())
+    axis.grid(axis="y")
+
+
+def plain_ticks(axis: Axes) -> None:
+    """Coordinates on both axes as whole numbers with thousands apart."""
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_formatter(FuncFormatter(lambda value, _: fmt.count(value)))
+
+
+def strip_ticks(axis: Axes, centres: Sequence[float], strips: Sequence[str]) -> None:
+    """Strip ids under their places, turned where they would touch, shortened where too long."""
+    labels = [shortened(strip) for strip in strips]
+    crowded = sum(len(label) + 2 for label in labels) > 90
+    axis.xaxis.set_major_locator(FixedLocator(list(centres)))
+    axis.set_xticks(
+        list(centres), labels, rotation=90 if crowded else 0, fontsize=6.5 if crowded else 7.5
+    )
+    axis.tick_params(axis="x", length=0)
+    axis.set_xlabel("strip")
+
+
+def shortened(text: str, length: int = 18) -> str:
+    """A long id with its middle left out."""
+    half = (length - 1) // 2
+    return text if len(text) <= length else f"{text[:half]}…{text[-half:]}"
+
+
+def legend_below(figure: Figure, axis: Axes, columns: int) -> None:
+    """Legend under the axes, outside the data."""
+    handles, labels = axis.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=min(columns, len(labels) or 1))

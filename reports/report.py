@@ -1,0 +1,32 @@
+"""Everything that is written for one block: tables, figures, HTML and PDF."""
+
+from pathlib import Path
+
+from . import document, figures, html, tables
+from . import pdf as pdf_writer
+from .results_view import Results
+
+
+def write_report(results: Results, folder: Path, *, pdf: bool = True) -> list[Path]:
+    """Write ``tables/*.csv``, ``figures/*.svg``, ``report.html`` and ``report.pdf`` into a folder.
+
+    The PDF comes last: if it cannot be made (`PdfUnavailableError`), the rest is there.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    written = tables.write_tables(results, folder / "tables")
+    written += figures.write_figures(results, folder / "figures")
+    page = html.render(document.build(results))
+    written.append(_write(folder / "report.html", page.encode("utf-8")))
+    if pdf:
+        written.append(_write(folder / "report.pdf", pdf_writer.render(page)))
+    return written
+
+
+def _write(path: Path, content: bytes) -> Path:
+    path.write_bytes(content)
+    return path

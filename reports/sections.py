@@ -1,0 +1,266 @@
+"""What a block's report says, section by section, around its tables and figures."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from . import figures, parallax_tables, statistics_tables
+from . import format as fmt
+from .figure_style import Drawing
+from .results_view import Results, has_mm, rows, setting
+from .tables import Table
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph of plain text."""
+
+    kind: ClassVar[str] = "paragraph"
+    text: str
+
+
+@dataclass(frozen=True)
+class Bullets:
+    """A list of plain texts."""
+
+    kind: ClassVar[str] = "bullets"
+    texts: tuple[str, ...]
+
+
+Content = Paragraph | Bullets | Table | Drawing
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section before its tables and figures are numbered."""
+
+    id: str
+    title: str
+    content: tuple[Content, ...]
+
+
+def subtitle(results: Results) -> str:
+    """The block in figures."""
+    block = results["block"]
+    counted = (
+        ("n_images", "images"),
+        ("n_strips", "strips"),
+        ("n_models", "stereo models"),
+        ("n_tie_points", "tie points"),
+        ("n_check_points", "check points"),
+    )
+    return " · ".join(f"{fmt.count(block[key])} {words}" for key, words in counted)
+
+
+def block_report(results: Results) -> tuple[tuple[Content, ...], tuple[Part, ...]]:
+    """The opening (the plan) and the sections of a block's report."""
+    drawings = figures.draw(results)
+    opening = _known(drawings.get("plan"))
+    parts = (
+        _parallax(results, drawings),
+        _error_sources(results, drawings),
+        _angle_errors(results),
+        _regression(results, drawings),
+        _decisions(results),
+        _corrected(results, drawings),
+        _check_points(results, drawings),
+        _limits(results),
+        _provenance(results),
+    )
+    return opening, parts
+
+
+def _parallax(results: Results, drawings: dict[str, Drawing]) -> Part:
+    units = ("px", "mm") if has_mm(results) else ("px",)
+    text = (
+        "Vertical parallax is what keeps two conjugate rays from meeting: their distance across "
+        "the base, at the scale of the image. A stereo model is two consecutive exposures of a "
+        "strip with at least six tie points in common; its parallax is the root mean square (RMS) "
+        "over these points. Parallax computed from the POS shows the errors of the POS and the "
+        "measuring noise; parallax left by relative orientation, which needs no POS angles, shows "
+        "the measuring noise alone."
+    )
+    if not has_mm(results):
+        text += " The pixel size is not known, so all parallax is given in pixels (px)."
+    tables = [parallax_tables.by_strip(results, unit) for unit in units]
+    models = parallax_tables.by_model(results)
+    return Part(
+        "parallax",
+        "Vertical parallax",
+        (Paragraph(text), *_filled(tables), *_known(drawings.get("models")), *_filled([models])),
+    )
+
+
+def _error_sources(results: Results, drawings: dict[str, Drawing]) -> Part:
+    text = (
+        "Every model is oriented again while POS angles of its right image are held: all three, "
+        "omega, phi, or kappa. If the parallax stays high when an angle is held, and falls to that "
+        "of relative orientation when it is free, this angle carries the error."
+    )
+    table = parallax_tables.error_sources(results)
+    return Part(
+        "sources",
+        "Error sources",
+        (Paragraph(text), *_known(drawings.get("error_sources")), *_filled([table])),
+    )
+
+
+def _angle_errors(results: Results) -> Part:
+    how = {
+        "coplanarity": "They are estimated by a least-squares adjustment of the whole block in "
+        "which the rays of each pair of images have to lie in one plane; positions are weighted by "
+        "their stated accuracy, angles are almost free, and check points take no part.",
+        "adjusted": "They are the differences between the POS and the adjusted orientation given "
+        "with the block.",
+    }
+    text = (
+        "The error of an angle is POS minus estimated, one value per image. "
+        f"{how.get(setting(results, 'errors'), '')}"
+    )
+    errors = rows(results, "angle_errors")
+    unused = [row["image"] for row in errors if not row["used"]]
+    if unused:
+        few = "" if len(unused) > 12 else f" ({', '.join(unused)})"
+        text += (
+            f" For {len(unused)} of {len(errors)} images the tie points do not determine the "
+            f"angles; they take no part in summary and regression{few}."
+        )
+    return Part(
+        "angles",
+        "Errors of the POS angles",
+        (Paragraph(text), *_filled([statistics_tables.angle_summary(results)])),
+    )
+
+
+def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
+    text = (
+        "If the error of an angle follows time, a straight line describes it and can be taken off. "
+        "Ordinary least squares (OLS) treats the errors of all images as independent, as the "
+        "published method does. Generalised least squares (GLS) allows for their covariance: "
+        "errors of neighbouring images come from the same tie points, and along one strip alone "
+        "they form a chain, for which OLS intervals are far too narrow."
+    )
+    pictures = [drawing for name, drawing in drawings.items() if name.startswith("regression")]
+    tables = [
+        statistics_tables.ordinary_regression(results),
+        statistics_tables.generalised_regression(results),
+    ]
+    reasons = () if tables[0].rows else tuple(Paragraph(note) for note in tables[0].notes[2:])
+    return Part(
+        "regression", "Errors over time", (Paragraph(text), *_filled(tables), *reasons, *pictures)
+    )
+
+
+def _decisions(results: Results) -> Part:
+    frame = setting(results, "frame", "ground")
+    text = (
+        f"Rules: {setting(results, 'rules', 'paper')}. Scope: {setting(results, 'scope')}. "
+        f"Frame of the corrections: {frame} (ground: the angle as delivered; camera: a rotation "
+        "about the axes of the image, in which a misalignment of the camera is constant)."
+    )
+    why = setting(results, "frame_reason")
+    content: list[Content] = [Paragraph(f"{text} {why}".strip())]
+    compared = rows(results, "frames")
+    if compared:
+        content.append(
+            statistics_tables.pairs(
+                "frames",
+                "Mean vertical parallax of strips whose own errors took no part in the fit, px.",
+                ("Frame", "Parallax out of sample, px"),
+                [(row["frame"], fmt.number(row["out_of_sample_px"])) for row in compared],
+            )
+        )
+    return Part(
+        "decisions", "Decisions", (*content, *_filled([statistics_tables.decisions(results)]))
+    )
+
+
+def _corrected(results: Results, drawings: dict[str, Drawing]) -> Part:
+    text = (
+        "Corrected angle = POS angle minus fitted error. The parallax is computed again from the "
+        "corrected POS, for each angle alone (with the regression line, whether or not it was "
+        "selected) and for the selected set."
+    )
+    table = parallax_tables.corrected(results)
+    return Part(
+        "corrected",
+        "Parallax after correction",
+        (Paragraph(text), *_known(drawings.get("corrected")), *_filled([table])),
+    )
+
+
+def _check_points(results: Results, drawings: dict[str, Drawing]) -> Part:
+    tables = [statistics_tables.check_points(results, translation_removed=r) for r in (True, False)]
+    if not any(table.rows for table in tables):
+        none = Paragraph(
+            "The block has no check points, so the accuracy on the ground was not tested."
+        )
+        return Part("check-points", "Check points", (none,))
+    text = (
+        "Every check point is intersected from all images that show it, with the orientation "
+        "named, and compared with its given coordinates. Check points took no part in any "
+        "estimate above."
+    )
+    return Part(
+        "check-points",
+        "Check points",
+        (Paragraph(text), *_filled(tables), *_known(drawings.get("check_points"))),
+    )
+
+
+def _limits(results: Results) -> Part:
+    text = (
+        "Tie points tell orientation errors only where these make vertical parallax. Within one "
+        "strip, a common rotation about the base axis (roll) makes none; only side overlap with "
+        "another strip fixes it. Rotations about the other two axes are tied to the direction of "
+        "the base between GNSS positions."
+    )
+    table = statistics_tables.observability(results)
+    warnings = tuple(str(warning) for warning in results.get("warnings") or ())
+    told = (
+        (Paragraph("Warnings of the analysis:"), Bullets(warnings))
+        if warnings
+        else (Paragraph("The analysis gave no warnings."),)
+    )
+    return Part(
+        "limits",
+        "What the data cannot tell, and warnings",
+        (Paragraph(text), *_filled([table]), *told),
+    )
+
+
+def _provenance(results: Results) -> Part:
+    words = {
+        "rules": "Rules",
+        "scope": "Scope of the regressions",
+        "errors": "Source of the angle errors",
+        "frame": "Frame of the corrections",
+        "robust": "Robust estimation",
+    }
+    settings = results.get("settings") or {}
+    shown = [(text, _plain(settings.get(key))) for key, text in words.items()]
+    versions = [
+        (str(name), str(version)) for name, version in (results.get("versions") or {}).items()
+    ]
+    tables = [
+        statistics_tables.inputs(results),
+        statistics_tables.pairs(
+            "settings", "Settings of the analysis.", ("Setting", "Value"), shown
+        ),
+        statistics_tables.pairs("versions", "Software.", ("Package", "Version"), versions),
+    ]
+    return Part("provenance", "Inputs, settings, versions", _filled(tables))
+
+
+def _plain(value: object) -> str:
+    if value is None:
+        return fmt.MISSING
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+
+
+def _filled(tables: Iterable[Table]) -> tuple[Table, ...]:
+    return tuple(table for table in tables if table.rows)
+
+
+def _known(*drawings: Drawing | None) -> tuple[Drawing, ...]:
+    return tuple(drawing for drawing in drawings if drawing)

@@ -1,0 +1,164 @@
+"""Tables as objects (columns, units, alignment, caption), and the results as CSV files."""
+
+import csv
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from . import format as fmt
+from .results_view import Results
+
+Align = Literal["left", "right"]
+
+CSV_TABLES = (
+    "images",
+    "parallax",
+    "models",
+    "error_sources",
+    "angle_errors",
+    "angle_error_summary",
+    "regression",
+    "selection",
+    "corrected_parallax",
+    "check_points",
+    "check_point_residuals",
+    "observability",
+    "frames",
+)
+_VECTOR_PARTS = {"slope_ci95": ("low", "high"), "gls_slope_ci95": ("low", "high"), "shift_m": "xyz"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column with its cells as text."""
+
+    title: str
+    cells: tuple[str, ...]
+    unit: str = ""
+    align: Align = "right"
+    group: str = ""
+
+
+@dataclass(frozen=True)
+class HeadGroup:
+    """A heading over several neighbouring columns."""
+
+    title: str
+    span: int
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table that can be read alone.
+
+    `name` is an identifier, `caption` says what is shown and how it was computed, `notes` explain
+    signs and missing values, `strong` are the indices of rows that sum up the others.
+    """
+
+    name: str
+    caption: str
+    columns: tuple[Column, ...]
+    notes: tuple[str, ...] = ()
+    strong: frozenset[int] = frozenset()
+
+    @property
+    def rows(self) -> tuple[tuple[str, ...], ...]:
+        """Cells by row."""
+        return tuple(zip(*(column.cells for column in self.columns), strict=True))
+
+    @property
+    def groups(self) -> tuple[HeadGroup, ...]:
+        """Headings over the columns; empty if no column belongs to a group."""
+        if not any(column.group for column in self.columns):
+            return ()
+        merged: list[HeadGroup] = []
+        for column in self.columns:
+            if merged and column.group and merged[-1].title == column.group:
+                merged[-1] = HeadGroup(column.group, merged[-1].span + 1)
+            else:
+                merged.append(HeadGroup(column.group, 1))
+        return tuple(merged)
+
+
+def text_column(title: str, cells: Iterable[str | None], group: str = "") -> Column:
+    """A column of words."""
+    return Column(
+        title, tuple(fmt.MISSING if cell is None else cell for cell in cells), "", "left", group
+    )
+
+
+def count_column(title: str, values: Iterable[float | None], group: str = "") -> Column:
+    """A column of whole numbers."""
+    return Column(title, tuple(fmt.count(value) for value in values), group=group)
+
+
+def aligned_column(
+    title: str, unit: str, values: Sequence[float | None], digits: int = 3, group: str = ""
+) -> Column:
+    """A column of numbers of one kind: all with the same decimals, so that they compare by eye."""
+    decimals = fmt.shared_decimals(values, digits)
+    return Column(title, tuple(fmt.fixed(value, decimals) for value in values), unit, group=group)
+
+
+def number_column(
+    title: str, unit: str, values: Iterable[float | None], digits: int = 3, group: str = ""
+) -> Column:
+    """A column of numbers of different magnitude: each with its own significant digits."""
+    return Column(title, tuple(fmt.number(value, digits) for value in values), unit, group=group)
+
+
+def p_column(title: str, values: Iterable[float | None], group: str = "") -> Column:
+    """A column of p-values."""
+    return Column(title, tuple(fmt.p_value(value) for value in values), group=group)
+
+
+def write_tables(results: Results, folder: Path) -> list[Path]:
+    """Write every list of the results as a CSV file, with all digits and the names of the results.
+
+    Parameters
+    ----------
+    results
+        The results dictionary.
+    folder
+        Where the files go; made if it does not exist.
+
+    Returns
+    -------
+    list of Path
+        The files written: one per list that has rows.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for name in CSV_TABLES:
+        records = [_flat(row) for row in results.get(name) or ()]
+        if records:
+            written.append(_write_csv(records, folder / f"{name}.csv"))
+    return written
+
+
+def _write_csv(records: Sequence[Mapping[str, Any]], path: Path) -> Path:
+    names = list(dict.fromkeys(name for record in records for name in record))
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(records)
+    return path
+
+
+def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
+    """One value per name: intervals and vectors in several columns, lists of words in one."""
+    flat: dict[str, Any] = {}
+    for name, value in row.items():
+        if name in _VECTOR_PARTS:
+            parts = value or (None,) * len(_VECTOR_PARTS[name])
+            flat |= {
+                f"{name}_{part}": x for part, x in zip(_VECTOR_PARTS[name], parts, strict=True)
+            }
+        elif name == "footprint":
+            corners = value or [(None, None)] * 4
+            for index, (x, y) in enumerate(corners, start=1):
+                flat |= {f"corner{index}_x_m": x, f"corner{index}_y_m": y}
+        else:
+            flat[name] = "; ".join(map(str, value)) if isinstance(value, list) else value
+    return flat
