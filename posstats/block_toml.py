@@ -182,7 +182,7 @@ def _refuse_unknown(raw: Mapping[str, Any], text: str, findings: list[str]) -> N
 
 def _cameras(raw: Mapping[str, Any], text: str, findings: list[str]) -> tuple[Camera, ...]:
     tables = raw.get("camera")
-    if tables is None:
+    if tables is None or tables == []:
         findings.append(f"{FILE}: found no [camera] section, expected one")
         return ()
     several = isinstance(tables, list)

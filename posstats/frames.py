@@ -84,7 +84,7 @@ class GroundFrame:
         if self.geoid is not None:
             _, _, height = _geoid_shift(self.geoid).transform(longitude, latitude, height)
         geocentric = self._geocentric(longitude, latitude, height)
-        offset = _finite_or_nan(geocentric) - self._geocentric(*self._origin, 0.0)
+        offset = geocentric - self._geocentric(*self._origin, 0.0)
         computing: _Floats = offset @ self._geocentric_from_computing
         return computing
 
@@ -103,7 +103,7 @@ class GroundFrame:
             shift = _geoid_shift(self.geoid)
             _, _, height = shift.transform(longitude, latitude, height, direction="INVERSE")
         x, y = _projection(self._crs)(longitude, latitude)
-        return _finite_or_nan(np.stack([x, y, height], axis=-1))
+        return np.stack([_finite_or_nan(values) for values in (x, y, height)], axis=-1)
 
     def computing_from_crs_axes(self, position_crs: ArrayLike) -> _Floats:
         """Rotations (n, 3, 3) of vectors along the local grid axes into the computing frame.
@@ -146,19 +146,20 @@ class GroundFrame:
         longitude, latitude = _projection(self._crs)(
             position_crs[..., 0], position_crs[..., 1], inverse=True
         )
-        return np.asarray(longitude), np.asarray(latitude)
+        return _finite_or_nan(longitude), _finite_or_nan(latitude)
 
     def _convergence(self, longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> _Floats:
         # PROJ's factors, unlike its projections, count longitude from the crs's own meridian.
         longitude = np.asarray(longitude_deg) - _prime_meridian_deg(self._crs)
         factors = _projection(self._crs).get_factors(longitude, latitude_deg)
-        return np.asarray(np.radians(factors.meridian_convergence), dtype=float)
+        return np.radians(_finite_or_nan(factors.meridian_convergence))
 
     def _geocentric(
         self, longitude_deg: ArrayLike, latitude_deg: ArrayLike, h: ArrayLike
     ) -> _Floats:
         transformer = _geocentric_from_geographic(self._crs)
-        return np.stack(transformer.transform(longitude_deg, latitude_deg, h), axis=-1)
+        xyz = transformer.transform(longitude_deg, latitude_deg, h)
+        return np.stack([_finite_or_nan(values) for values in xyz], axis=-1)
 
     def _require_east_north_axes(self, x: float, y: float) -> None:
         """Refuse grids that count west or south, where the convergence is another angle."""
@@ -254,6 +255,6 @@ def _east_north_up_from_grid(convergence_rad: _Floats) -> _Floats:
     return rotation
 
 
-def _finite_or_nan(position: _Floats) -> _Floats:
+def _finite_or_nan(values: ArrayLike) -> _Floats:
     """PROJ marks what it cannot transform with infinity."""
-    return np.where(np.isfinite(position).all(axis=-1, keepdims=True), position, np.nan)
+    return np.where(np.isfinite(values), values, np.nan)

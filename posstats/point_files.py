@@ -123,8 +123,9 @@ def refuse_outside_crs(
     given = np.isfinite(position_crs).all(axis=1)
     covered = np.isfinite(frame.to_computing(position_crs)).all(axis=1)
     rows = np.arange(len(table)) if row_of_position is None else row_of_position
+    area = f"{frame.crs}{' or its geoid grid' if frame.geoid is not None else ''}"
     findings += [
-        f"{table.place(row, 'x')}: found a position outside {frame.crs}, expected one in its area"
+        f"{table.place(row, 'x')}: found a position outside {area}, expected one inside"
         for row in rows[given & ~covered]
     ]
 

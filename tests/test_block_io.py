@@ -1,7 +1,9 @@
 """Block folders that must be read, and those that must be refused, with what is said then."""
 
+import errno
 import hashlib
 import os
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -307,9 +309,15 @@ def test_a_folder_in_place_of_a_file_is_refused(folder) -> None:
     )
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root reads everything")
-def test_an_unreadable_file_is_refused(folder) -> None:
-    (folder / "tie_points.csv").chmod(0)
+def test_an_unreadable_file_is_refused(folder, monkeypatch) -> None:
+    read_bytes = Path.read_bytes
+
+    def denied(path: Path) -> bytes:
+        if path.name == "tie_points.csv":
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        return read_bytes(path)
+
+    monkeypatch.setattr(Path, "read_bytes", denied)
     refused(folder, "tie_points.csv: cannot be read (Permission denied)")
 
 
@@ -499,6 +507,25 @@ def test_all_findings_are_kept_and_twenty_are_shown(folder) -> None:
         read_block(folder)
     assert len(error.value.findings) == 31
     assert str(error.value).endswith("... and 11 more")
+
+
+def test_a_geoid_grid_beside_the_block_turns_heights_ellipsoidal(tmp_path) -> None:
+    folder = written(perfect_block("EPSG:32631"), tmp_path)
+    ellipsoidal = read_block(folder).orientations.position_m
+    edit(folder, "block.toml", ('"ellipsoidal"', '"orthometric"\ngeoid = "geoid.gtx"'))
+    refused(folder, "geoid.gtx: cannot be read (No such file")
+    (folder / "geoid.gtx").write_bytes(b"no grid")
+    refused(folder, "block.crs: PROJ cannot read the geoid grid geoid.gtx")
+    header = struct.pack(">4d2i", 40.0, 0.0, 4.0, 4.0, 5, 5)
+    (folder / "geoid.gtx").write_bytes(header + np.full(25, 50.0).astype(">f4").tobytes())
+    block = read_block(folder)
+    assert np.allclose(block.orientations.position_m[:, 2] - ellipsoidal[:, 2], 50.0, atol=1e-3)
+    assert "geoid.gtx" in dict(block.inputs)
+    assert block.warnings == ()
+    (folder / "geoid.gtx").write_bytes(
+        header[:8] + struct.pack(">d", 90.0) + header[16:] + bytes(100)
+    )
+    assert all("outside EPSG:32631 or its geoid grid" in text for text in findings(folder))
 
 
 def test_positions_outside_the_crs_are_refused(tmp_path) -> None:
