@@ -63,11 +63,11 @@ class GroundFrame:
         longitude, latitude = _projection(crs)(x, y, inverse=True)
         if not np.isfinite([longitude, latitude]).all():
             raise GeometryError(f"the middle of the block, {x:.0f} {y:.0f}, is outside {crs}")
-        frame = cls(crs, (float(longitude), float(latitude)), geoid)
-        frame._require_east_north_axes(x, y)
+        origin_deg = float(longitude), float(latitude)
+        cls(crs, origin_deg)._require_east_north_axes(x, y)
         if geoid is not None:
             _geoid_shift(geoid)
-        return frame
+        return cls(crs, origin_deg, geoid)
 
     @property
     def is_tangent(self) -> bool:
