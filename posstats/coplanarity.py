@@ -29,7 +29,7 @@ _Matrix = Any  # three such rows
 
 @inner_kernel
 def _dot(a: _Vector, b: _Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
 @inner_kernel
@@ -47,7 +47,7 @@ def _parallax(a: _Vector, b: _Vector, base: _Vector) -> float:
     u = base[0] * b[2] - base[2] * b[0]
     v = base[0] * a[2] - base[2] * a[0]
     w = a[0] * b[2] - b[0] * a[2]
-    return (u * a[1] - w * base[1]) / v - b[1]
+    return float((u * a[1] - w * base[1]) / v - b[1])
 
 
 @inner_kernel
@@ -186,10 +186,11 @@ _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-4, 1e10
 _POOR_GAIN = 0.25  # share of the expected decrease
 # Smallest pivots of normals scaled to a unit diagonal that can be solved, and that determine
 # the elements (below the second, 0.2 px of noise turn an image by ten degrees and more).
-_SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 1e-6
+_SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 3e-7
 
-_HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-2
-_HUBER, _TUKEY = 1.345, 4.685  # 95 % efficiency on normal errors
+_HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 15, 50, 1e-2
+_HUBER = 0.3  # of the scale: nearly least absolute values, which blunders bend little
+_TUKEY = 4.685  # 95 % efficiency on normal errors
 _SCALE_FLOOR_PX = 0.01  # no point is measured better: smaller residuals are no blunders
 _WEIGHT_CHANGE = 1e-3
 
@@ -340,7 +341,7 @@ def _normals(pair: _Pair, state: _Floats, normals: _Floats, gradient: _Floats) -
             normals[i, j] = 0.0
             for k in range(_N_STATE):
                 normals[i, j] += column[k] * _sum_of_products(other, products[k])
-    return products[_N_STATE, _N_STATE]
+    return float(products[_N_STATE, _N_STATE])
 
 
 @inner_kernel
@@ -455,12 +456,15 @@ def _residuals(pair: _Pair, state: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _median_size(q: _Floats) -> float:
-    """Median of |q|, the upper one of two, by Hoare's selection (`np.median` compiles longer)."""
+def _median_size(q: _Floats, n_elements: int) -> float:
+    """Median of |q|, the `n_elements` smallest left out: a robust fit makes as many zero.
+
+    Hoare's selection, as `np.median` takes long to compile.
+    """
     size = np.empty(len(q))
     for i in range(len(q)):
         size[i] = abs(q[i])
-    first, last, middle = 0, len(q) - 1, len(q) // 2
+    first, last, middle = 0, len(q) - 1, min((len(q) + n_elements) // 2, len(q) - 1)
     while first < last:
         pivot, i, j = size[middle], first, last
         while i <= j:
@@ -475,7 +479,7 @@ def _median_size(q: _Floats) -> float:
             first = i
         if middle < i:
             last = j
-    return size[middle]
+    return float(size[middle])
 
 
 @inner_kernel
@@ -487,7 +491,7 @@ def _reweighted(pair: _Pair, state: _Floats, tukey: bool) -> float:
     """
     q = _residuals(pair, state)
     redundancy = max(len(q) - len(pair.free), 1)
-    scale = 1.4826 * (1.0 + 5.0 / redundancy) * _median_size(q)
+    scale = 1.4826 * (1.0 + 5.0 / redundancy) * _median_size(q, len(pair.free))
     scale = max(scale, _SCALE_FLOOR_PX)
     change = 0.0
     for k in range(len(q)):
@@ -511,7 +515,7 @@ def _rms_of_kept(pair: _Pair, state: _Floats) -> float:
         if pair.weights[k] > 0.0:
             total += q[k] * q[k]
             count += 1
-    return np.sqrt(total / count)
+    return float(np.sqrt(total / count))
 
 
 @inner_kernel
@@ -580,8 +584,7 @@ def adjust_pairs(
             free,
         )
         _weigh(pair)
-        status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
         if robust:
             _find_blunders(pair, state[p])
-            status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
+        status[p], iterations[p] = _least_squares(pair, state[p], _LAST_STEP_PX)
         rms[p] = _rms_of_kept(pair, state[p])

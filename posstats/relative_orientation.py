@@ -222,9 +222,7 @@ def _usable(models: StereoModels) -> _Texts:
     """(p,) "ok", or why a model cannot be oriented at all."""
     orientations = models.orientations
     images = np.stack([models.pairs.left, models.pairs.right], axis=1)
-    known = np.isfinite(orientations.position_m).all(1) & np.isfinite(orientations.angles_rad).all(
-        1
-    )
+    known = np.isfinite(np.hstack([orientations.position_m, orientations.angles_rad]))
     length = np.linalg.norm(models.base_m, axis=1)
     horizontal = np.hypot(models.base_m[:, 0], models.base_m[:, 1])
     status = np.full(len(models), "ok", dtype=object)
@@ -233,7 +231,7 @@ def _usable(models: StereoModels) -> _Texts:
     )
     status[length <= _MIN_BASE_M] = "degenerate: zero base"
     status[models.pairs.n_points < MIN_MODEL_POINTS] = f"fewer than {MIN_MODEL_POINTS} points"
-    status[~known[images].all(axis=1)] = "no orientation"
+    status[~known[images].all(axis=(1, 2))] = "no orientation"
     return status
 
 
@@ -243,10 +241,11 @@ def _adjusted(
     """Solve all models for the free elements and gather the result."""
     numbers = np.array(sorted(_STATE.index(element) for element in free), dtype=np.intp)
     p = len(models)
-    state = np.column_stack([start.angles_rad.reshape(p, 6), start.base[:, 1:] / start.base[:, :1]])
+    usable = np.equal(start.status, "ok").astype(bool)
+    base = np.where(usable[:, None], start.base, [1.0, 0.0, 0.0])
+    state = np.column_stack([start.angles_rad.reshape(p, 6), base[:, 1:] / base[:, :1]])
     rms, code, iterations = np.full(p, np.nan), np.zeros(p, np.intp), np.zeros(p, np.intp)
     weights = start.weights.copy()
-    usable = np.flatnonzero(start.status == "ok")
 
     def adjust(pairs: _Ints) -> None:
         adjust_pairs(
@@ -265,7 +264,7 @@ def _adjusted(
             iterations,
         )
 
-    _in_threads(adjust, usable, models.pairs.n_points)
+    _in_threads(adjust, np.flatnonzero(usable), models.pairs.n_points)
     status = start.status.copy()
     status[usable] = [_STATUS[c] for c in code[usable]]
     return _result(models, start, state, rms, status, weights, iterations)
@@ -295,10 +294,10 @@ def _result(
     n_points = models.pairs.n_points
     pair_of_point = models.pairs.pair_of_point
     n_kept = np.bincount(pair_of_point[weights > 0.0], minlength=len(models))
-    status[(status == "ok") & (n_kept < MIN_MODEL_POINTS)] = (
+    status[np.equal(status, "ok").astype(bool) & (n_kept < MIN_MODEL_POINTS)] = (
         f"fewer than {MIN_MODEL_POINTS} points after rejection"
     )
-    converged = status == "ok"
+    converged = np.equal(status, "ok").astype(bool)
     angles = np.where(converged[:, None, None], state[:, :6].reshape(-1, 2, 3), np.nan)
     turn = rotation_from_angles(angles, models.orientations.system)
     ground_from_base = np.swapaxes(start.base_from_ground, 1, 2)

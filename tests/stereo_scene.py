@@ -27,7 +27,7 @@ def true_models(
     rng = np.random.default_rng(seed)
     heading = rng.uniform(-np.pi, np.pi, n_models)
     forward = np.stack([np.cos(heading), np.sin(heading), np.zeros(n_models)], axis=1)
-    left = rng.uniform(-1e4, 1e4, (n_models, 3)) + [0.0, 0.0, 2e4]
+    left = rng.uniform(-1e4, 1e4, (n_models, 3)) + np.array([0.0, 0.0, 2e4])
     climb = rng.normal(0.0, climb_m, (n_models, 1)) * [0.0, 0.0, 1.0]
     position = np.stack([left, left + BASE_M * forward + climb], axis=1).reshape(-1, 3)
     turned = np.zeros((2 * n_models, 3))
