@@ -179,20 +179,20 @@ CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
 _N_STATE = 8
 _LANES = 64  # points worked on at once
 _MAX_ITERATIONS = 100
-_LAST_STEP_PX = 1e-9  # RMS change of q; of the angles about 1e-13 rad
+_LAST_STEP_PX = 1e-8  # RMS change of q; of the angles about 1e-12 rad
 _LAST_DECREASE = 1e-14  # share of the sum of squares, for large residuals
-_ROUNDING_PX = 1e-11  # of q, and so of the sum of squares
+_ROUNDING_PX = 3e-12  # of q, and so of the sum of squares
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-4, 1e10
 _POOR_GAIN = 0.25  # share of the expected decrease
 # Smallest pivots of normals scaled to a unit diagonal that can be solved, and that determine
 # the elements (below the second, 0.2 px of noise turn an image by ten degrees and more).
 _SINGULAR_PIVOT, _RANK_PIVOT = 1e-14, 3e-7
 
-_HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 15, 50, 1e-2
+_HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-1
 _HUBER = 0.3  # of the scale: nearly least absolute values, which blunders bend little
 _TUKEY = 4.685  # 95 % efficiency on normal errors
 _SCALE_FLOOR_PX = 0.01  # no point is measured better: smaller residuals are no blunders
-_WEIGHT_CHANGE = 1e-3
+_WEIGHT_CHANGE = 1e-2
 
 
 class _Pair(NamedTuple):

@@ -440,7 +440,9 @@ def test_a_real_block_of_known_orientation_needs_little():
     assert np.isfinite(raw).sum() == 53
     assert np.nanmean(raw) == pytest.approx(0.214, abs=0.002)
     result = orient(models)
-    assert result.converged.sum() == 53
+    # one model of six points turns by three degrees for 0.2 px of noise: it may have no solution
+    assert result.converged[result.n_points > 6].all()
+    assert result.converged.sum() >= 52
     assert np.nanmax(result.y_parallax_rms_px / raw) <= 1.0
 
 
