@@ -116,19 +116,27 @@ class _Linearised:
 
 
 def linearised(
-    pairs: PointPairs, unknowns: _Floats, frames: _Floats, system: AngleSystem
+    pairs: PointPairs,
+    unknowns: _Floats,
+    image_noise: _Floats,
+    frames: _Floats,
+    system: AngleSystem,
 ) -> _Linearised:
-    """Y-parallaxes and derivatives at `unknowns` (n, 6).
+    """Y-parallaxes and derivatives at `unknowns` (n, 6) and at image points freed of noise.
 
+    q is that of the measured image points to first order in `image_noise` (m, 2), the derivatives
+    are those at the points without it (the rigorous Gauss-Helmert form): derivatives that share
+    the noise of q would bias what only the positions determine, such as the tilt of the block.
     The parallax is measured in `frames` (p, 3, 3), base_from_ground, which stay those of the
     POS bases: so the derivatives are exact, also where q is not yet zero.
     """
+    left_noise, right_noise = image_noise[pairs.left_ray], image_noise[pairs.right_ray]
     rotation = rotation_from_angles(unknowns[:, :3], system)
     derivative = rotation_derivatives(unknowns[:, :3], system)
     base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
     q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
-        pairs.left_vectors,
-        pairs.right_vectors,
+        pairs.left_vectors - np.pad(left_noise, ((0, 0), (0, 1))),
+        pairs.right_vectors - np.pad(right_noise, ((0, 0), (0, 1))),
         pairs.offsets,
         frames @ rotation[pairs.left],
         frames @ rotation[pairs.right],
@@ -136,6 +144,7 @@ def linearised(
         frames[:, None] @ derivative[pairs.right],
         np.einsum("pij,pj->pi", frames, base),
     )
+    q += np.einsum("ij,ij->i", by_image, np.concatenate([left_noise, right_noise], axis=1))
     frame = np.repeat(frames, np.diff(pairs.offsets), axis=0)
     return _Linearised(q, by_left, by_right, np.einsum("ni,nij->nj", by_base, frame), by_image)
 
@@ -170,17 +179,19 @@ def adjust(
     weighting = _Weighting(
         "reweight" if robust else "plain", robust, np.ones(len(pairs.left_vectors))
     )
-    unknowns = priors.values
+    unknowns, image_noise = priors.values, np.zeros((len(pairs.ray_image), 2))
     for count in range(1, MAX_ITERATIONS + 1):
-        observed = _finite(linearised(pairs, unknowns.reshape(-1, 6), frames, priors.system))
+        observed = _finite(
+            linearised(pairs, unknowns.reshape(-1, 6), image_noise, frames, priors.system)
+        )
         weighting = weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
         normals = _normal_equations(pairs, observed, weighting, priors)
         step, decrement = _step(normals, priors.weights * (unknowns - priors.values))
-        unknowns = unknowns + step
+        unknowns, image_noise = unknowns + step, normals.image_noise
         if progress is not None:
             progress(count, MAX_ITERATIONS)
         if weighting.phase == "fixed" and decrement < _SETTLED["fixed"]:
-            return _result(pairs, priors, unknowns, frames, weighting, count)
+            return _result(pairs, priors, unknowns, image_noise, frames, weighting, count)
         weighting = weighting.advanced(decrement)
     raise ConvergenceError(
         f"the coplanarity adjustment did not settle in {MAX_ITERATIONS} steps (y-parallax still"
@@ -230,11 +241,12 @@ def _finite(observed: _Linearised) -> _Linearised:
 
 @dataclass(frozen=True, eq=False)
 class _Normals:
-    """N with the priors (both triangles only in M), J'Wq, M, v'Wv, tr(W D D')."""
+    """N with the priors (upper triangle), J'Wq, M, D'Wq in px, v'Wv, tr(W D D')."""
 
     normals: _Floats
     right_side: _Floats
     noise_normals: _Floats
+    image_noise: _Floats
     square_sum: float
     noise_trace: float
 
@@ -250,6 +262,7 @@ def _normal_equations(
     size = priors.values.size
     normals, right_side = np.zeros((size, size)), np.zeros(size)
     noise_normals = np.zeros((size, size) if with_noise else (0, 0))
+    image_noise = np.zeros((len(pairs.ray_image), 2))
     square_sum, noise_trace = accumulate_normals(
         observed.q,
         observed.by_left_angles,
@@ -267,14 +280,19 @@ def _normal_equations(
         normals,
         right_side,
         noise_normals,
+        image_noise,
     )
     weight = 1.0 / weighting.scale_px**2
     normals *= weight
     normals[np.diag_indices(size)] += priors.weights
     noise_normals *= weight**2
-    mirrored = noise_normals + np.triu(noise_normals, 1).T
     return _Normals(
-        normals, weight * right_side, mirrored, weight * square_sum, weight * noise_trace
+        normals=normals,
+        right_side=weight * right_side,
+        noise_normals=noise_normals + np.triu(noise_normals, 1).T,
+        image_noise=image_noise,
+        square_sum=weight * square_sum,
+        noise_trace=weight * noise_trace,
     )
 
 
@@ -291,11 +309,12 @@ def _result(
     pairs: PointPairs,
     priors: Priors,
     unknowns: _Floats,
+    image_noise: _Floats,
     frames: _Floats,
     weighting: _Weighting,
     count: int,
 ) -> AdjustedBlock:
-    observed = linearised(pairs, unknowns.reshape(-1, 6), frames, priors.system)
+    observed = linearised(pairs, unknowns.reshape(-1, 6), image_noise, frames, priors.system)
     equations = _normal_equations(pairs, observed, weighting, priors, with_noise=True)
     propagation = propagated(
         factorised(equations.normals), equations.noise_normals, priors.weights

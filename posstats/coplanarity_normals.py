@@ -15,7 +15,7 @@ E = D'L^-1 D, H = D'L^-1 J and g = D'L^-1 q (2n rows each) and the Cholesky fact
 
     G = D'WJ = (I + E)^-1 H,                 J'WJ = J'L^-1 J - (C^-1 H)'(C^-1 H),
     J'Wq = J'L^-1 q - (C^-1 H)'(C^-1 g),     q'Wq = q'L^-1 q - |C^-1 g|^2,
-    tr(W D D') = tr((I + E)^-1 E) = 2n - |C^-1|^2.
+    D'Wq = (I + E)^-1 g,                     tr(W D D') = tr((I + E)^-1 E) = 2n - |C^-1|^2.
 """
 
 import numpy as np
@@ -113,6 +113,16 @@ def _solve_upper(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
 
 
 @inner_kernel
+def _back_substitute(factor: _Floats, n: int, column: _Floats, image_noise: _Floats) -> None:
+    """C'^-1 column (n,) into image_noise (n / 2, 2)."""
+    for i in range(n - 1, -1, -1):
+        value = column[i]
+        for k in range(i + 1, n):
+            value -= factor[k, i] * image_noise[k // 2, k % 2]
+        image_noise[i // 2, i % 2] = value / factor[i, i]
+
+
+@inner_kernel
 def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
     """|C^-1|^2, the trace of (C C')^-1; work (n,)."""
     total = 0.0
@@ -164,6 +174,7 @@ def accumulate_normals(
     normals: _Floats,
     right_side: _Floats,
     noise_normals: _Floats,
+    image_noise: _Floats,
 ) -> tuple[float, float]:
     """Add the point pairs of a block to its normal equations, point by point.
 
@@ -181,6 +192,9 @@ def accumulate_normals(
         then three coordinates.
     noise_normals
         (6 n, 6 n): M = G'G (upper triangle) is added, or (0, 0): not wanted.
+    image_noise
+        (m, 2): D'Wq, the part of every ray's image coordinates that makes the parallaxes (its
+        negative is the least-squares residual), is written, px.
 
     Returns
     -------
@@ -226,6 +240,7 @@ def accumulate_normals(
                 right[i] -= shared[r, i] * projected
         for i in range(6 * n):
             right_side[6 * images[i // 6] + i % 6] += right[i]
+        _back_substitute(noise, 2 * n, shared[:, 6 * n], image_noise[first : first + n])
         if with_noise:
             noise_trace += 2 * n - _inverse_square_sum(noise, 2 * n, work)
             _solve_upper(noise, 2 * n, shared, 6 * n)
