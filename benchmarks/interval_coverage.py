@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.angle_errors import AngleErrors, coplanarity_errors
-from posstats.regression import BLOCK_SCOPE, regress
+from posstats.drift import MIN_LINE_POINTS
+from posstats.regression import BLOCK_SCOPE, angle_sample
 from posstats.rotation import ANGLE_NAMES
 from posstats.scenario import load_scenario
 from posstats.stereo import stereo_models
@@ -144,22 +145,18 @@ def coverage(trials: Iterator[AngleErrors]) -> dict[tuple[str, str], tuple[float
     hits: Counter[tuple[str, str, str]] = Counter()
     total: Counter[tuple[str, str]] = Counter()
     for errors in trials:
-        first_strip = errors.strip[0]
-        for regression in regress(errors):
-            if regression.scope not in (BLOCK_SCOPE, first_strip) or regression.gls is None:
+        first_strip = errors.used & (errors.strip == errors.strip[0])
+        for scope, chosen in ((BLOCK_SCOPE, errors.used), ("strip", first_strip)):
+            if np.count_nonzero(chosen) < MIN_LINE_POINTS:
                 continue
-            scope = "block" if regression.scope == BLOCK_SCOPE else "strip"
-            drift = DRIFTS_RAD_PER_S[ANGLE_NAMES.index(regression.angle)]
-            total[scope, regression.angle] += 1
-            for kind, fit in (("gls", regression.gls), ("ols", regression.ols)):
-                low, high = fit.conf_int()
-                hits[scope, regression.angle, kind] += low <= drift <= high
+            for axis, angle in enumerate(ANGLE_NAMES):
+                sample = angle_sample(errors, axis, chosen, scope)
+                total[scope, angle] += 1
+                for kind in ("gls", "ols"):
+                    low, high = sample.line(kind).conf_int()
+                    hits[scope, angle, kind] += low <= DRIFTS_RAD_PER_S[axis] <= high
     return {
-        (scope, angle): (
-            hits[scope, angle, "gls"] / n,
-            hits[scope, angle, "ols"] / n,
-            n,
-        )
+        (scope, angle): (hits[scope, angle, "gls"] / n, hits[scope, angle, "ols"] / n, n)
         for (scope, angle), n in sorted(total.items())
     }
 
