@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from . import sections
+from . import figures, sections
 from .figure_style import Drawing
 from .results_view import Results
 from .sections import Bullets, Content, Paragraph
@@ -71,15 +71,17 @@ class ReportDocument:
         return repr(self)
 
 
-def build(results: Results) -> ReportDocument:
+def build(results: Results, drawings: dict[str, Drawing] | None = None) -> ReportDocument:
     """Make the document of a block's report.
 
     Parameters
     ----------
     results
         The results dictionary (``results.json``), the only source of the report.
+    drawings
+        The figures of the results, if they have been drawn already.
     """
-    opening, parts = sections.block_report(results)
+    opening, parts = sections.block_report(results, drawings or figures.draw(results))
     numbering = _Numbering()
     block = results["block"]
     return ReportDocument(
@@ -87,7 +89,7 @@ def build(results: Results) -> ReportDocument:
         block=str(block["name"]),
         subtitle=sections.subtitle(results),
         mark=SIMULATED if block.get("simulated") else "",
-        created=str(results.get("created") or ""),
+        created=str(results.get("created") or "").partition("T")[0],
         version=str(results.get("posstats_version") or ""),
         verdict=paragraph(results),
         coarse=is_coarse(results),

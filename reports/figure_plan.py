@@ -145,7 +145,9 @@ def _classes(values: Sequence[float]) -> list[float]:
         steps = LogLocator(subs=(1.0, 2.0, 5.0), numticks=30).tick_values(low, high)
         steps = steps if len(steps) <= 10 else LogLocator().tick_values(low, high)
     else:
-        steps = MaxNLocator(7, steps=[1, 2, 5, 10]).tick_values(low, high * (1.0 + 1e-9))
+        steps = MaxNLocator(7, steps=[1, 2, 5, 10], min_n_ticks=1).tick_values(
+            low, high * (1.0 + 1e-9)
+        )
     inner = [step for step in steps if low < step < high]
     below = max((step for step in steps if step <= low), default=low)
     above = min((step for step in steps if step > high), default=math.nextafter(high, math.inf))
@@ -297,7 +299,7 @@ def _frame(axis: Axes, limits: Limits, *, compass: bool = True) -> None:
     style.plain_ticks(axis)
     width_in = 2.8 * (limits[1] - limits[0]) / max(limits[3] - limits[2], limits[1] - limits[0])
     axis.xaxis.set_major_locator(
-        MaxNLocator(max(1, int(width_in / TICK_ROOM_IN)), steps=[1, 2, 5, 10])
+        MaxNLocator(max(1, int(width_in / TICK_ROOM_IN)), steps=[1, 2, 5, 10], min_n_ticks=1)
     )
     axis.yaxis.set_major_locator(MaxNLocator(6))
     for side in ("top", "right"):

@@ -76,6 +76,7 @@ class Drawing:
 def style() -> Any:
     """Context in which figures are made: the settings of the house, and no others."""
     settings: dict[Any, Any] = {**matplotlib.rcParamsDefault, **_RC}
+    del settings["backend"]  # not ours to choose; figures are drawn without one
     return matplotlib.rc_context(settings)
 
 

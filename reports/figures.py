@@ -34,11 +34,16 @@ def draw(results: Results) -> dict[str, Drawing]:
     return {drawing.name: drawing for drawing in drawings if drawing}
 
 
-def write_figures(results: Results, folder: Path) -> list[Path]:
-    """Write every figure as ``<name>.svg`` into a folder, made if it does not exist."""
+def write_figures(
+    results: Results, folder: Path, drawings: dict[str, Drawing] | None = None
+) -> list[Path]:
+    """Write every figure as ``<name>.svg`` into a folder, made if it does not exist.
+
+    `drawings` are those of the results if they have been drawn already.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for name, drawing in draw(results).items():
+    for name, drawing in (drawings or draw(results)).items():
         path = folder / f"{name}.svg"
         path.write_text(f'<?xml version="1.0" encoding="utf-8"?>\n{drawing.svg}', encoding="utf-8")
         written.append(path)

@@ -1,6 +1,7 @@
 """Numbers become text here and nowhere below: significant digits, units, typographic signs."""
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -92,6 +93,16 @@ def p_phrase(value: float | None) -> str:
     """A p-value for a sentence: ``p = 0.367`` or ``p < 0.001``."""
     text = p_value(value)
     return f"p {text}" if text.startswith("<") else f"p = {text}"
+
+
+def prose(text: str) -> str:
+    """A sentence of the analysis with its numbers and signs as this report writes them."""
+    powers = re.sub(
+        r"(\d)e([+-]\d+)",
+        lambda match: f"{match[1]}\u00a0×\u00a0{power_of_ten(int(match[2]))}",
+        text,
+    )
+    return re.sub(r"\bR2\b", "R²", powers)
 
 
 def joined(words: Iterable[str], conjunction: str = "and") -> str:

@@ -19,8 +19,9 @@ def write_report(results: Results, folder: Path, *, pdf: bool = True) -> list[Pa
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = tables.write_tables(results, folder / "tables")
-    written += figures.write_figures(results, folder / "figures")
-    page = html.render(document.build(results))
+    drawings = figures.draw(results)
+    written += figures.write_figures(results, folder / "figures", drawings)
+    page = html.render(document.build(results, drawings))
     written.append(_write(folder / "report.html", page.encode("utf-8")))
     if pdf:
         written.append(_write(folder / "report.pdf", pdf_writer.render(page)))

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from . import figures, parallax_tables, statistics_tables
 from . import format as fmt
+from . import parallax_tables, statistics_tables
 from .figure_style import Drawing
 from .results_view import Results, has_mm, rows, setting
 from .tables import Table
@@ -52,9 +52,10 @@ def subtitle(results: Results) -> str:
     return " · ".join(f"{fmt.count(block[key])} {words}" for key, words in counted)
 
 
-def block_report(results: Results) -> tuple[tuple[Content, ...], tuple[Part, ...]]:
+def block_report(
+    results: Results, drawings: dict[str, Drawing]
+) -> tuple[tuple[Content, ...], tuple[Part, ...]]:
     """The opening (the plan) and the sections of a block's report."""
-    drawings = figures.draw(results)
     opening = _known(drawings.get("plan"))
     parts = (
         _parallax(results, drawings),

@@ -37,7 +37,7 @@ def ordinary_regression(results: Results) -> Table:
     """The regressions by ordinary least squares: coefficients, R2, F0 and p."""
     kept = _fitted(results)
     unit = fmt.rate_unit(row["slope_rad_per_s"] for row in kept)
-    columns = (
+    columns: tuple[Column, ...] = (
         *_who(kept),
         count_column("n", [row["n"] for row in kept]),
         count_column("clusters", [row["n_time_clusters"] for row in kept]),
@@ -55,6 +55,7 @@ def ordinary_regression(results: Results) -> Table:
         "with 1 and n − 2 degrees of freedom. Null hypothesis of p: the error does not change with "
         "time (a₁ = 0), errors of different images being independent.",
         "n: images; clusters: moments that are apart in time, as many as the line really rests on.",
+        "omega, phi, kappa: ground frame; pitch, roll, yaw: about the axes of the image.",
         *_reasons(results),
     )
     return Table("regression_ols", caption, columns, notes, _block_rows(kept))
@@ -68,8 +69,9 @@ def generalised_regression(results: Results) -> Table:
     small = fmt.angle_unit(row["white_noise_sigma_rad"] for row in kept)
     columns = [
         *_who(kept),
-        *_slopes(kept, unit, "slope_rad_per_s", "slope_ci95", "p_value", "OLS"),
-        *_slopes(kept, unit, "gls_slope_rad_per_s", "gls_slope_ci95", "gls_p_value", "GLS"),
+        *_slopes(kept, unit, "gls_slope_rad_per_s", "gls_slope_ci95", "GLS"),
+        p_column("p", [row.get("gls_p_value") for row in kept], "GLS"),
+        *_slopes(kept, unit, "slope_rad_per_s", "slope_ci95", "OLS"),
     ]
     for key, title in (
         ("white_noise_sigma_rad", "white noise"),
@@ -86,21 +88,19 @@ def generalised_regression(results: Results) -> Table:
         "GLS: covariance of the angle errors as estimated, plus white noise and, for the block, a "
         "random constant per strip, with variances by restricted maximum likelihood; their "
         "standard deviations are in the last columns. Where the two differ, believe GLS.",
-        "Null hypothesis of p: the slope is zero (t test; OLS: the same as the F test).",
+        "Null hypothesis of p: the slope is zero (t test).",
     )
     return Table("regression_gls", caption, tuple(columns), notes, _block_rows(kept))
 
 
 def _slopes(
-    kept: Sequence[Row], unit: fmt.Unit, slope: str, interval: str, p: str, group: str
+    kept: Sequence[Row], unit: fmt.Unit, slope: str, interval: str, group: str
 ) -> list[Column]:
     bounds = [row.get(interval) or (None, None) for row in kept]
     texts = [_interval(unit.scaled(low), unit.scaled(high)) for low, high in bounds]
-    name = unit.name
     return [
-        number_column("slope", name, [unit.scaled(row.get(slope)) for row in kept], 3, group),
-        Column("95\u00a0%\u00a0interval", tuple(texts), name, group=group),
-        p_column("p", [row.get(p) for row in kept], group),
+        number_column("slope", unit.name, [unit.scaled(row.get(slope)) for row in kept], 3, group),
+        Column("95\u00a0%\u00a0interval", tuple(texts), unit.name, group=group),
     ]
 
 
@@ -120,7 +120,7 @@ def decisions(results: Results) -> Table:
         text_column("Scope", [scope_label(row.get("scope") or "block") for row in chosen]),
         text_column("Corrected", ["yes" if row["correct"] else "no" for row in chosen]),
         text_column("Form", [row["form"] for row in chosen]),
-        text_column("Reason", [row["reason"] for row in chosen]),
+        text_column("Reason", [fmt.prose(row["reason"]) for row in chosen]),
     )
     corrected = frozenset(k for k, row in enumerate(chosen) if row["correct"])
     caption = "Decisions on the correction of the POS angles, each with its reason."
@@ -201,12 +201,12 @@ def pairs(
     return Table(name, caption, columns)
 
 
-def _who(kept: Sequence[Row]) -> tuple[Column, ...]:
-    who = [text_column("Angle", [row["angle"] for row in kept])]
-    if len({row["frame"] for row in kept}) > 1:
-        who.append(text_column("Frame", [row["frame"] for row in kept]))
-    who.append(text_column("Scope", [scope_label(row["scope"]) for row in kept]))
-    return tuple(who)
+def _who(kept: Sequence[Row]) -> tuple[Column, Column]:
+    """Angle (its name tells the frame) and scope."""
+    return (
+        text_column("Angle", [row["angle"] for row in kept]),
+        text_column("Block or strip", [row["scope"] for row in kept]),
+    )
 
 
 def _fitted(results: Results) -> list[Row]:

@@ -1,0 +1,322 @@
+"""The report as its readers meet it: HTML, PDF, tables and figures made from results alone."""
+
+import copy
+import csv
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from report_results import area_results, assert_schema, coarse_results
+
+from posstats.errors import PosstatsError
+from posstats.reports import document, figures, html, pdf, tables, verdict
+from posstats.reports.report import write_report
+
+HOSTILE = "<script>alert(1)</script> \"a\", 'b' & $x_1$"
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@pytest.fixture(scope="module")
+def area():
+    results = area_results(per_strip=12)
+    assert_schema(results)
+    return results
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    results = coarse_results()
+    assert_schema(results)
+    return results
+
+
+@pytest.fixture(scope="module")
+def page(area) -> str:
+    return html.render(document.build(area))
+
+
+@pytest.fixture(scope="module")
+def coarse_page(coarse) -> str:
+    return html.render(document.build(coarse))
+
+
+class _Texts(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.texts: list[str] = []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.ids += [value for name, value in attrs if name == "id"]
+        names = ("href", "src", "xlink:href")
+        self.links += [value for name, value in attrs if name in names]
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+def read(text: str) -> _Texts:
+    parser = _Texts()
+    parser.feed(text)
+    return parser
+
+
+def plain(text: str) -> str:
+    return text.replace("\u00a0", " ").replace("\u202f", " ")
+
+
+def test_verdict_names_parallax_cause_drift_correction_and_check_points(area):
+    said = plain(verdict.paragraph(area))
+    for words in (
+        "22.6 px (0.27 mm)",
+        "81 times the 0.280 px",
+        "comes from omega",
+        "follows time",
+        "omega (linear in time) was corrected; phi and kappa stayed as delivered",
+        "leaves 0.400 px (0.0048 mm), 1.4 times",
+        "At 15 check points",
+        "rotation about the base axis",
+    ):
+        assert words in said
+
+
+def test_verdict_of_a_coarse_pos_says_so_and_how_much_each_angle_errs(coarse):
+    said = plain(verdict.paragraph(coarse))
+    assert said.startswith("This POS is far too coarse for direct use. Its angles err (RMS): omega")
+    assert "No check points were given" in said
+    assert "no angle was corrected" in said
+    assert "mm" not in said
+
+
+def test_verdict_of_a_block_without_models_says_that_nothing_is_known(area):
+    empty = area | {"verdict": dict.fromkeys(area["verdict"])}
+    assert "No vertical parallax could be computed" in verdict.paragraph(empty)
+
+
+def test_verdict_names_an_interval_that_includes_zero(area):
+    results = copy.deepcopy(area)
+    for row in results["regression"]:
+        row["gls_slope_ci95"] = [-1e-7, 9e-7]
+    assert "includes zero, so a drift is not proven" in verdict.paragraph(results)
+
+
+def test_tables_and_figures_are_numbered_from_one_without_gaps(page):
+    for kind in ("Table", "Figure"):
+        numbers = [int(n) for n in re.findall(rf"<strong>{kind} (\d+)\.</strong>", page)]
+        assert numbers == list(range(1, len(numbers) + 1))
+        assert len(numbers) >= 8
+
+
+def test_the_page_loads_nothing_and_repeats_no_id(page, coarse_page):
+    for text in (page, coarse_page):
+        parsed = read(text)
+        assert "script" not in parsed.tags
+        assert all(link.startswith(("#", "data:")) for link in parsed.links)
+        addresses = re.findall(r"url\([\"']?([^\"')]*)", text)
+        assert addresses
+        assert all(address.startswith(("#", "data:")) for address in addresses)
+        assert len(parsed.ids) == len(set(parsed.ids))
+        targets = {link[1:] for link in parsed.links if link.startswith("#")}
+        assert targets <= set(parsed.ids)
+
+
+def test_simulated_blocks_are_marked_and_real_ones_are_not(page, coarse_page):
+    assert "Simulated data" in "".join(read(page).texts)
+    assert "Simulated" not in "".join(read(coarse_page).texts)
+
+
+def test_hostile_ids_appear_as_text(area):
+    results = copy.deepcopy(area)
+    results["block"]["name"] = HOSTILE
+    for key in ("images", "models", "angle_errors", "parallax", "error_sources"):
+        for row in results[key]:
+            row["strip"] = HOSTILE if row["strip"] == "1" else row["strip"]
+    for row in results["models"]:
+        row["left"] = HOSTILE
+    results["warnings"] = [HOSTILE]
+    results["inputs"] = [{"file": HOSTILE, "sha256": "0"}]
+    parsed = read(html.render(document.build(results)))
+    assert "script" not in parsed.tags
+    texts = [text.strip() for text in parsed.texts]
+    assert texts.count(HOSTILE) >= 5
+
+
+def test_missing_values_are_dashes_never_words_of_the_program(coarse_page):
+    text = " ".join(read(coarse_page.split("</style>", 1)[1]).texts)
+    assert not re.search(r"\b(None|nan|NaN|inf|null)\b", text)
+    assert "–" in text
+
+
+def test_no_number_has_more_digits_than_anyone_reads(page):
+    text = plain(" ".join(read(page.split("</style>", 1)[1]).texts))
+    assert not re.search(r"\d\.\d{7,}", text)
+
+
+def test_empty_lists_still_make_a_report(area):
+    lists = {name: [] for name, value in area.items() if isinstance(value, list)}
+    text = html.render(document.build(area | lists | {"expected_noise_px": None}))
+    assert "no check points" in text.lower() or "not tested" in text
+
+
+def test_every_figure_is_well_formed_with_a_title_and_texts_as_texts(area):
+    for name, drawing in figures.draw(area).items():
+        root = ET.fromstring(drawing.svg)  # noqa: S314 - made here
+        assert root[0].tag.endswith("title")
+        assert root[0].text
+        assert root.findall(".//{*}text"), name
+        ids = [node.get("id") for node in root.iter() if node.get("id")]
+        assert all(label.startswith(f"{name}-") for label in ids)
+
+
+def test_figures_leave_the_settings_of_matplotlib_alone(area):
+    import matplotlib
+
+    def settings():  # reading "backend" would import pyplot
+        return {key: matplotlib.rcParams[key] for key in matplotlib.rcParams if key != "backend"}
+
+    before = settings()
+    figures.draw(area)
+    assert settings() == before
+    assert "matplotlib.pyplot" not in sys.modules
+
+
+def test_figures_and_page_are_the_same_bytes_every_time(area, page):
+    assert html.render(document.build(area)) == page
+
+
+def test_csv_tables_keep_every_row_and_every_digit(area, tmp_path):
+    tables.write_tables(area, tmp_path)
+    with (tmp_path / "models.csv").open(encoding="utf-8", newline="") as stream:
+        read_back = list(csv.DictReader(stream))
+    assert len(read_back) == len(area["models"])
+    assert [float(row["pos_px"]) for row in read_back] == [m["pos_px"] for m in area["models"]]
+    with (tmp_path / "regression.csv").open(encoding="utf-8", newline="") as stream:
+        first = next(csv.DictReader(stream))
+    assert float(first["slope_ci95_low"]) == area["regression"][0]["slope_ci95"][0]
+
+
+def test_csv_tables_leave_missing_values_empty(coarse, tmp_path):
+    tables.write_tables(coarse, tmp_path)
+    with (tmp_path / "parallax.csv").open(encoding="utf-8", newline="") as stream:
+        assert all(row["mean_mm"] == "" for row in csv.DictReader(stream))
+
+
+def test_write_report_writes_all_parts(coarse, tmp_path):
+    written = write_report(coarse, tmp_path / "out", pdf=False)
+    names = {str(path.relative_to(tmp_path / "out")) for path in written}
+    assert {"report.html", "tables/models.csv", "figures/plan.svg"} <= names
+    assert "report.pdf" not in names
+    assert all(path.stat().st_size for path in written)
+
+
+@pytest.fixture(scope="module")
+def pdf_file(page, tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("pdf") / "report.pdf"
+    path.write_bytes(pdf.render(page))
+    return path
+
+
+def pdf_pages(path: Path) -> list[str]:
+    if not shutil.which("pdftotext"):
+        pytest.skip("pdftotext (poppler-utils) is not installed")
+    command = ["pdftotext", "-layout", str(path), "-"]
+    run = subprocess.run(command, capture_output=True, check=True, text=True)
+    return [plain(text) for text in run.stdout.split("\f")[:-1]]
+
+
+def test_every_pdf_page_is_numbered_headed_and_marked(pdf_file, area):
+    pages = pdf_pages(pdf_file)
+    assert len(pages) >= 6
+    for number, text in enumerate(pages, start=1):
+        assert f"page {number} of {len(pages)}" in text
+        assert area["block"]["name"] in text
+        assert "Simulated data" in text
+
+
+def test_the_pdf_holds_verdict_contents_and_captions(pdf_file):
+    text = re.sub(r"\s+", " ", " ".join(pdf_pages(pdf_file)))
+    assert "The parallax comes from omega" in text
+    assert "Contents" in text
+    assert "Table 1." in text
+    assert "Figure 1." in text
+    assert "Null hypothesis" in text
+
+
+def test_the_pdf_is_the_same_bytes_every_time(page, pdf_file):
+    assert pdf.render(page) == pdf_file.read_bytes()
+
+
+def test_a_missing_pango_names_the_packages_to_install(monkeypatch):
+    def missing(*_, **__):
+        raise OSError("cannot load library 'libpango-1.0-0'")
+
+    monkeypatch.setattr("builtins.__import__", _failing_import(missing))
+    with pytest.raises(PosstatsError, match=r"libpango-1\.0-0 libpangoft2-1\.0-0"):
+        pdf.render("<p>text</p>")
+
+
+def _failing_import(missing):
+    genuine = __import__
+
+    def guarded(name, *args, **kwargs):
+        return missing() if name.startswith("weasyprint") else genuine(name, *args, **kwargs)
+
+    return guarded
+
+
+PROBE = """<script>
+const log = [];
+addEventListener("error", event => log.push("error " + event.message), true);
+document.addEventListener("securitypolicyviolation", e => log.push("request " + e.blockedURI));
+addEventListener("load", () => document.fonts.ready.then(() => {
+  const root = document.documentElement;
+  log.push("width " + root.scrollWidth + " of " + root.clientWidth);
+  log.push("requests " + performance.getEntriesByType("resource")
+    .filter(entry => !entry.name.startsWith("data:")).length);
+  log.push("fonts " + [...document.fonts].map(font => font.status).join(" "));
+  parent.postMessage(log.join("; "), "*");
+}));
+</script>"""
+FRAME = """<!DOCTYPE html><body><p id="told"></p>
+<script>addEventListener("message", event => { told.textContent = event.data; });</script>
+<iframe src="NAME" width="WIDTH" height="900" style="border: 0"></iframe></body>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+@pytest.mark.parametrize("width", [400, 1280])
+def test_a_browser_sees_no_error_no_request_and_no_sideways_scrolling(
+    page, coarse_page, tmp_path, width
+):
+    for name, text in (("area", page), ("coarse", coarse_page)):
+        probed = text.replace("<head>", f"<head>{PROBE}", 1)
+        (tmp_path / f"{name}.html").write_text(probed, encoding="utf-8")
+        frame = tmp_path / "frame.html"
+        inside = FRAME.replace("NAME", f"{name}.html").replace("WIDTH", str(width))
+        frame.write_text(inside, encoding="utf-8")
+        told, errors = browse(frame, tmp_path / "profile")
+        assert f"width {width} of {width}" in told
+        assert "requests 0" in told
+        assert "fonts loaded" in told
+        assert "error" not in told
+        assert "CONSOLE" not in errors
+
+
+def browse(frame: Path, profile: Path) -> tuple[str, str]:
+    """What the page tells its frame, and the browser's log."""
+    flags = [
+        "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+        "--disable-background-networking", "--disable-component-update", "--disable-sync",
+        "--hide-scrollbars", "--enable-logging=stderr", "--allow-file-access-from-files",
+        "--window-size=1400,1000", "--virtual-time-budget=8000",
+    ]  # fmt: skip
+    command = [CHROMIUM, *flags, f"--user-data-dir={profile}", "--dump-dom", frame.as_uri()]
+    run = subprocess.run(command, capture_output=True, check=True, text=True, timeout=60)
+    return re.search(r'id="told">([^<]*)', run.stdout)[1], run.stderr
