@@ -22,8 +22,9 @@ _Floats = NDArray[np.float64]
 
 MIN_LINE_POINTS = 3
 MIN_CONSTANT_POINTS = 2
-ROUNDING = 1e-9
-"""Asymmetry and negative eigenvalues of a covariance up to this share of its size are rounding."""
+ROUNDING = 1e-6
+"""Asymmetry and negative eigenvalues of a covariance up to this share of its size are rounding:
+adjustments of real blocks leave 1e-9, single precision 1e-7."""
 TURN_GAPS = 3.0
 """A gap longer than this many usual (median) intervals starts a new cluster of exposures; two
 missing photographs in a row do not."""
@@ -283,7 +284,7 @@ def _checked_covariance(covariance: ArrayLike, n: int) -> _Floats:
     if np.abs(known - known.T).max() > ROUNDING * size:
         raise FitError("the covariance is not symmetric")
     symmetric: _Floats = 0.5 * (known + known.T)
-    if size > 0.0 and np.linalg.eigvalsh(symmetric / size)[0] < -ROUNDING * n:
+    if size > 0.0 and np.linalg.eigvalsh(symmetric / size)[0] < -ROUNDING:
         raise FitError("the covariance is not positive semidefinite")
     return symmetric
 

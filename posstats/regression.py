@@ -1,14 +1,13 @@
 """Regression of angle errors on time: is there a drift, how large, and how certain."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from posstats.drift import (
-    MIN_CONSTANT_POINTS,
     ConstantFit,
     DriftFit,
     FitError,
@@ -24,6 +23,7 @@ __all__ = ["AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift"
 
 _Floats = NDArray[np.float64]
 FitKind = Literal["ols", "gls"]
+_Fit = TypeVar("_Fit")
 BLOCK_SCOPE = "block"
 
 
@@ -111,26 +111,33 @@ def _regression(
     errors: "AngleErrors", axis: int, chosen: NDArray[np.bool_], angle: str, scope: str
 ) -> AngleRegression:
     sample = angle_sample(errors, axis, chosen, scope)
-    ols = gls = None
-    reason = None
-    try:
-        ols, gls = sample.line("ols"), sample.line("gls")
-    except FitError as problem:
-        reason = str(problem)
-    constant = len(sample.time_s) >= MIN_CONSTANT_POINTS
+    lines, line_reason = _fits_or_reason(sample.line)
+    constants, _ = _fits_or_reason(sample.constant)
     return AngleRegression(
         angle=angle,
         frame=errors.frame,
         scope=scope,
         n=len(sample.time_s),
         n_strips=len(set(errors.strip[chosen])),
-        ols=ols,
-        gls=gls,
-        ols_constant=sample.constant("ols") if constant else None,
-        gls_constant=sample.constant("gls") if constant else None,
+        ols=lines.get("ols"),
+        gls=lines.get("gls"),
+        ols_constant=constants.get("ols"),
+        gls_constant=constants.get("gls"),
         covariance_known=errors.covariance_rad2 is not None,
-        reason=reason,
+        reason=line_reason,
     )
+
+
+def _fits_or_reason(fit: Callable[[FitKind], _Fit]) -> tuple[dict[FitKind, _Fit], str | None]:
+    """Both kinds of a fit; those that cannot be made are left out, and the last reason given."""
+    made: dict[FitKind, _Fit] = {}
+    reason = None
+    for kind in get_args(FitKind):
+        try:
+            made[kind] = fit(kind)
+        except FitError as problem:
+            reason = str(problem)
+    return made, reason
 
 
 def angle_sample(

@@ -203,6 +203,15 @@ def test_short_strips_have_a_reason_instead_of_a_line():
     assert "no line can be fitted" in decision.reason
 
 
+def test_covariance_that_cannot_be_used_leaves_ols_and_a_reason():
+    errors = angle_errors(drift=(5e-7, 0, 0))
+    block = regress(replace(errors, covariance_rad2=-errors.covariance_rad2))[0]
+    assert block.ols.slope == pytest.approx(5e-7, rel=0.05)
+    assert block.gls is None
+    assert block.gls_constant is None
+    assert "not positive semidefinite" in block.reason
+
+
 def test_no_image_used_at_all():
     errors = angle_errors()
     regressions = regress(replace(errors, used=np.full(len(errors), False)))
