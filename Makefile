@@ -15,7 +15,7 @@ help:  ## Show this list
 .PHONY: paper
 paper: $(READY)  ## Simulate a small block of the paper's area 1, analyse it, write its report
 	@.ci/debian-packages --pango
-	$(BIN)/posstats simulate --scenario posstats/scenarios/area1-small.toml --out $(OUT)/block
+	$(BIN)/posstats simulate --scenario area1-small --out $(OUT)/block
 	$(BIN)/posstats analyse $(OUT)/block --out $(OUT)
 
 .PHONY: test

@@ -94,7 +94,7 @@ def read_adjusted(
     convention: Convention,
     findings: list[str],
 ) -> Orientations | None:
-    """adjusted.csv in the order of the POS, NaN where an image is missing."""
+    """adjusted.csv in the order of the POS, NaN where an image is missing; accuracy unknown."""
     if not table.require(("image", *POSITION_COLUMNS, *settings.angle_columns), findings):
         return None
     image = unique_images(table, findings)
@@ -112,7 +112,14 @@ def read_adjusted(
     rotation = convention.ground_from_image(position_crs, file_angles)
     position[target] = convention.projection_centre(position_crs, rotation)
     angles[target] = convention.computing_angles(rotation)
-    return replace(pos, position_m=position, angles_rad=angles)
+    unknown = np.full((len(pos), 3), np.nan)
+    return replace(
+        pos,
+        position_m=position,
+        angles_rad=angles,
+        sigma_position_m=unknown,
+        sigma_angles_rad=unknown,
+    )
 
 
 def unique_images(table: Table, findings: list[str]) -> _Ids:

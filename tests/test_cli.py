@@ -120,7 +120,8 @@ def test_simulate_writes_a_block_that_check_accepts(tmp_path):
 def test_check_prints_the_findings_of_a_refused_block(block_folder, tmp_path):
     for path in block_folder.iterdir():
         (tmp_path / path.name).write_bytes(path.read_bytes())
-    rows = list(csv.reader((tmp_path / "orientations.csv").open()))
+    with (tmp_path / "orientations.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
     rows[2][rows[0].index("x")] = "nan"
     with (tmp_path / "orientations.csv").open("w", newline="") as file:
         csv.writer(file).writerows(rows)
