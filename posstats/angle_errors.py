@@ -119,7 +119,7 @@ def adjusted_errors(block: Block) -> AngleErrors:
         error_rad=error,
         covariance_rad2=None,
         used=used,
-        warnings=_listed("have no adjusted orientation", pos.image[~used]),
+        warnings=_listed("no adjusted orientation", pos.image[~used]),
     )
 
 
@@ -205,20 +205,19 @@ def _errors(
         observability=found,
         sigma0=adjusted.sigma_px,
         warnings=(
-            *_listed("have no tie points in common with another image", pos.image[~tied]),
-            *_listed("have undetermined angles", pos.image[tied & ~determined]),
+            *_listed("no tie points in common with another image", pos.image[~tied]),
+            *_listed("angles undetermined", pos.image[tied & ~determined]),
         ),
     )
 
 
-def _listed(what: str, images: _Ids) -> tuple[str, ...]:
+def _listed(finding: str, images: _Ids) -> tuple[str, ...]:
     """One sentence that names the images, or none."""
     if len(images) == 0:
         return ()
     shown = ", ".join(images[:_SHOWN_IMAGES])
     more = f" and {len(images) - _SHOWN_IMAGES} more" if len(images) > _SHOWN_IMAGES else ""
-    count = f"{len(images)} images" if len(images) > 1 else "1 image"
-    return (f"{count} {what}: {shown}{more}",)
+    return (f"{finding} ({len(images)} of the images): {shown}{more}",)
 
 
 def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErrors:
@@ -257,7 +256,10 @@ def _about_ground_axes(
     """Covariance (n, 3, n, 3) of small rotations about the ground axes, from that of angles."""
     rotation = rotation_from_angles(angles_rad, orientations.system)
     turn = rotation @ _about_image_axes(angles_rad, orientations)
-    return np.einsum("iab,ibjc,jdc->iajd", turn, covariance_rad2, turn, optimize=True)
+    covariance: _Floats = np.einsum(
+        "iab,ibjc,jdc->iajd", turn, covariance_rad2, turn, optimize=True
+    )
+    return covariance
 
 
 def _inverse_left_jacobian(vector_rad: _Floats) -> _Floats:

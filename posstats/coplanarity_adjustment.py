@@ -33,7 +33,7 @@ _LARGEST_STEP_RAD = 0.2
 _Phase = Literal["reweight", "plain", "fixed"]
 _NEXT: dict[_Phase, _Phase] = {"reweight": "plain", "plain": "fixed", "fixed": "fixed"}
 # A phase has settled when the mean square step, in standard errors, falls below:
-_SETTLED: dict[_Phase, float] = {"reweight": 1e-2, "plain": 1e-3, "fixed": 1e-10}
+_SETTLED: dict[_Phase, float] = {"reweight": 0.1, "plain": 1e-2, "fixed": 1e-9}
 _SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 
 
@@ -316,9 +316,7 @@ def _result(
 ) -> AdjustedBlock:
     observed = linearised(pairs, unknowns.reshape(-1, 6), image_noise, frames, priors.system)
     equations = _normal_equations(pairs, observed, weighting, priors, with_noise=True)
-    propagation = propagated(
-        factorised(equations.normals), equations.noise_normals, priors.weights
-    )
+    propagation = propagated(factorised(equations.normals), equations.noise_normals, priors.weights)
     sigma2 = propagation.variance_factor(equations.square_sum, equations.noise_trace)
     n = len(priors.angles_rad)
     angles = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()

@@ -51,15 +51,18 @@ def _add_pair(
 ) -> None:
     """Add one pair to J'L^-1 J, J'L^-1 q (local), E and [H g] (shared).
 
-    `left`, `right` are the places of its rays in the point; `row` (12,) is its row of J.
+    `left` < `right` are the places of its rays in the point; `row` (12,) is its row of J. Of
+    `normals` only the upper triangle becomes complete.
     """
     last = shared.shape[1] - 1
     for i in range(12):
         at = 6 * left + i if i < 6 else 6 * right + i - 6
         scaled = weight * row[i]
         right_side[at] += scaled * q
+        if i < 6:
+            for j in range(6):
+                normals[at, 6 * left + j] += scaled * row[j]
         for j in range(6):
-            normals[at, 6 * left + j] += scaled * row[j]
             normals[at, 6 * right + j] += scaled * row[6 + j]
         for r in range(2):
             shared[2 * left + r, at] += scaled * by_image[k, r]
@@ -71,6 +74,12 @@ def _add_pair(
         for j in range(2):
             noise[at, 2 * left + j] += scaled * by_image[k, j]
             noise[at, 2 * right + j] += scaled * by_image[k, 2 + j]
+
+
+@inner_kernel
+def _square(store: _Floats, n: int) -> _Floats:
+    """A contiguous (n, n) matrix on top of a store: the compiler vectorises only such."""
+    return store[: n * n].reshape(n, n)
 
 
 @inner_kernel
@@ -139,8 +148,8 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 @inner_kernel
 def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
     """Upper triangle of matrix += sign rows' rows; rows (n, width) leading part."""
-    for r in range(n):
-        for i in range(width):
+    for i in range(width):
+        for r in range(n):
             f = sign * rows[r, i]
             for j in range(i, width):
                 matrix[i, j] += f * rows[r, j]
@@ -203,15 +212,15 @@ def accumulate_normals(
     """
     with_noise = noise_normals.shape[0] > 0
     most = n_rays.max()
-    local_store = np.empty((6 * most, 6 * most))
-    shared_store = np.empty((2 * most, 6 * most + 1))
-    noise_store = np.empty((2 * most, 2 * most))
+    local_store, noise_store = np.empty((6 * most) ** 2), np.empty((2 * most) ** 2)
+    shared_store = np.empty(2 * most * (6 * most + 1))
     right_store, row, work = np.empty(6 * most), np.empty(12), np.empty(2 * most)
     square_sum = noise_trace = 0.0
     for point in range(first_ray.shape[0]):
         first, n = first_ray[point], n_rays[point]
-        local, noise = local_store[: 6 * n, : 6 * n], noise_store[: 2 * n, : 2 * n]
-        shared, right = shared_store[: 2 * n, : 6 * n + 1], right_store[: 6 * n]
+        local, noise = _square(local_store, 6 * n), _square(noise_store, 2 * n)
+        shared = shared_store[: 2 * n * (6 * n + 1)].reshape(2 * n, 6 * n + 1)
+        right = right_store[: 6 * n]
         local[:] = 0.0
         noise[:] = 0.0
         shared[:] = 0.0

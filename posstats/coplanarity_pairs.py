@@ -61,16 +61,9 @@ def point_pairs(tie_points: TiePoints, models: StereoModels, across: StereoModel
     parts = [(part, _long_enough(part)) for part in (models, across)]
     images = [(part.pairs.left[keep], part.pairs.right[keep]) for part, keep in parts]
     counts = np.concatenate([part.pairs.n_points[keep] for part, keep in parts])
-    chosen = [np.repeat(keep, part.pairs.n_points) for part, keep in parts]
-    left_ray, right_ray, left_vectors, right_vectors = (
-        np.concatenate([array(part)[rows] for (part, _), rows in zip(parts, chosen, strict=True)])
-        for array in (
-            lambda part: part.pairs.left_ray,
-            lambda part: part.pairs.right_ray,
-            lambda part: part.left_vectors,
-            lambda part: part.right_vectors,
-        )
-    )
+    chosen = [(part, np.repeat(keep, part.pairs.n_points)) for part, keep in parts]
+    left_ray = np.concatenate([p.pairs.left_ray[rows] for p, rows in chosen])
+    right_ray = np.concatenate([p.pairs.right_ray[rows] for p, rows in chosen])
     point = tie_points.point[left_ray]
     by_point = np.argsort(point, kind="stable")
     points, point_counts = np.unique(point, return_counts=True)
@@ -78,8 +71,8 @@ def point_pairs(tie_points: TiePoints, models: StereoModels, across: StereoModel
         left=np.concatenate([left for left, _ in images]),
         right=np.concatenate([right for _, right in images]),
         offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.intp),
-        left_vectors=left_vectors,
-        right_vectors=right_vectors,
+        left_vectors=np.concatenate([p.left_vectors[rows] for p, rows in chosen]),
+        right_vectors=np.concatenate([p.right_vectors[rows] for p, rows in chosen]),
         left_ray=left_ray,
         right_ray=right_ray,
         ray_image=tie_points.image,

@@ -82,7 +82,7 @@ def _open_rotations(angles: EstimatedAngles, inside: _Bools) -> Iterator[str]:
     images = np.flatnonzero(inside)
     if len(images) == 0:
         return
-    covariance = angles.rotation_covariance_rad2[np.ix_(images, range(3), images, range(3))]
+    covariance = angles.rotation_covariance_rad2[images][:, :, images]
     variances, axes = np.linalg.eigh(covariance.mean(axis=(0, 2)))
     limit = UNDETERMINED_SHARE * float(angles.prior_sigma_rad[images].min())
     along = _flight_axis(angles.position_m[images])

@@ -1,11 +1,11 @@
-"""Small simulated blocks for the tests of the adjustment: truth known, no dependence on scenarios."""
+"""Small simulated blocks of known truth for the tests of the adjustment."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Accuracy, Block, GroundPoints, Orientations, TiePoints
+from posstats.block import Accuracy, Block, Orientations, TiePoints
 from posstats.camera import Camera
 from posstats.frames import GroundFrame
 from posstats.rotation import AngleSystem, rotation_from_angles
