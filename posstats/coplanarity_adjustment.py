@@ -8,6 +8,7 @@ observations are weighted, and why the covariance is still right, stands in `cop
 """
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -260,28 +261,42 @@ def _normal_equations(
     with_noise: bool = False,
 ) -> _Normals:
     size = priors.values.size
-    normals, right_side = np.zeros((size, size)), np.zeros(size)
-    noise_normals = np.zeros((size, size) if with_noise else (0, 0))
     image_noise = np.zeros((len(pairs.ray_image), 2))
-    square_sum, noise_trace = accumulate_normals(
-        observed.q,
-        observed.by_left_angles,
-        observed.by_right_angles,
-        observed.by_base,
-        observed.by_image,
-        precision(observed.variance, weighting.robust_weight),
-        pairs.left_ray,
-        pairs.right_ray,
-        pairs.by_point,
-        pairs.point_offsets,
-        pairs.first_ray,
-        pairs.n_rays,
-        pairs.ray_image,
-        normals,
-        right_side,
-        noise_normals,
-        image_noise,
-    )
+    pair_precision = precision(observed.variance, weighting.robust_weight)
+
+    def accumulated(points: slice) -> tuple[_Floats, _Floats, _Floats, float, float]:
+        normals, right_side = np.zeros((size, size)), np.zeros(size)
+        noise_normals = np.zeros((size, size) if with_noise else (0, 0))
+        square_sum, noise_trace = accumulate_normals(
+            observed.q,
+            observed.by_left_angles,
+            observed.by_right_angles,
+            observed.by_base,
+            observed.by_image,
+            pair_precision,
+            pairs.left_ray,
+            pairs.right_ray,
+            pairs.by_point,
+            pairs.point_offsets[points.start : points.stop + 1],
+            pairs.first_ray[points],
+            pairs.n_rays[points],
+            pairs.ray_image,
+            normals,
+            right_side,
+            noise_normals,
+            image_noise,
+        )
+        return normals, right_side, noise_normals, square_sum, noise_trace
+
+    with ThreadPoolExecutor() as threads:
+        first, *others = threads.map(accumulated, _parts(pairs))
+    normals, right_side, noise_normals, square_sum, noise_trace = first
+    for other in others:
+        normals += other[0]
+        right_side += other[1]
+        noise_normals += other[2]
+        square_sum += other[3]
+        noise_trace += other[4]
     weight = 1.0 / weighting.scale_px**2
     normals *= weight
     normals[np.diag_indices(size)] += priors.weights
@@ -294,6 +309,13 @@ def _normal_equations(
         square_sum=weight * square_sum,
         noise_trace=weight * noise_trace,
     )
+
+
+def _parts(pairs: PointPairs) -> list[slice]:
+    """Points in two parts of equal numbers of pairs: the same sums on every machine."""
+    n_points = len(pairs.first_ray)
+    middle = int(np.searchsorted(pairs.point_offsets, len(pairs.by_point) // 2))
+    return [part for part in (slice(0, middle), slice(middle, n_points)) if part.start < part.stop]
 
 
 def _step(equations: _Normals, prior_side: _Floats) -> tuple[_Floats, float]:
