@@ -49,7 +49,10 @@ def by_model(results: Results) -> style.Drawing | None:
     axis = figure.add_subplot()
     place = {strip: k for k, strip in enumerate(strips_with_models(results))}
     ordered = sorted(models, key=lambda model: place.get(model["strip"], len(place)))
+    chosen = verdict(results).get("corrected_angles")
     for key, label, colour, marker in _MODEL_SERIES:
+        if key == "corrected_px" and not chosen:
+            continue  # the same as the POS: it would hide it
         y = [np.nan if model[key] is None else model[key] for model in ordered]
         hollow = key == "corrected_px"
         axis.plot(range(len(y)), y, marker, ms=2.6, mew=0.7, color=colour,

@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 Limits = tuple[float, float, float, float]  # west, east, south, north
 
 PAD = 0.06
-TICK_ROOM_IN = 0.7  # what a coordinate of seven digits needs
+NARROW = 0.9  # width over height below which coordinates would touch side by side
 MAX_HEIGHT_IN = 3.5  # so that the plan stands on the first page, below the verdict
 BESIDE_IN, BELOW_IN = 1.8, 0.95  # room for axis labels and colour bar, and for axis label and scale
 
@@ -297,10 +297,9 @@ def _frame(axis: Axes, limits: Limits, *, compass: bool = True) -> None:
     if axis.get_subplotspec() is None or axis.get_subplotspec().is_first_col():  # type: ignore[union-attr]
         axis.set_ylabel("north, m")
     style.plain_ticks(axis)
-    width_in = 2.8 * (limits[1] - limits[0]) / max(limits[3] - limits[2], limits[1] - limits[0])
-    axis.xaxis.set_major_locator(
-        MaxNLocator(max(1, int(width_in / TICK_ROOM_IN)), steps=[1, 2, 5, 10], min_n_ticks=1)
-    )
+    narrow = limits[1] - limits[0] < NARROW * (limits[3] - limits[2])
+    axis.xaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+    axis.tick_params(axis="x", rotation=90 if narrow else 0)
     axis.yaxis.set_major_locator(MaxNLocator(6))
     for side in ("top", "right"):
         axis.spines[side].set_visible(True)

@@ -17,7 +17,6 @@ from .results_view import (
 from .tables import Column, Table, aligned_column, count_column, number_column, text_column
 
 SHOWN_MODELS = 30
-_NO_MODEL = f"{fmt.MISSING}: no stereo model with six or more points in common."
 
 
 def by_strip(results: Results, unit: str) -> Table:
@@ -147,12 +146,17 @@ def _per_strip(results: Results, key: str, name: str, words: dict[str, str], cap
     for value, title in words.items():
         means = [first(results, key, strip=s, **{name: value}).get("mean_px") for s in kept]
         columns.append(number_column(title, "px", means))
-    return Table(
-        key, caption, tuple(columns), (_NO_MODEL,) if len(kept) < len(strips(results)) else ()
-    )
+    return Table(key, caption, tuple(columns), _left_out(results, kept))
 
 
 def _strips_in(results: Results, key: str) -> list[str]:
     """Strips with at least one value; strips without a model would be rows of dashes."""
     known = {row["strip"] for row in rows(results, key) if not fmt.is_missing(row.get("mean_px"))}
     return [strip for strip in strips(results) if strip in known]
+
+
+def _left_out(results: Results, kept: Sequence[str]) -> tuple[str, ...]:
+    others = [strip for strip in strips(results) if strip not in kept]
+    if not others:
+        return ()
+    return (f"Without a stereo model of six or more points: strip {fmt.joined(others)}.",)

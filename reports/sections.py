@@ -7,7 +7,7 @@ from typing import ClassVar
 from . import format as fmt
 from . import parallax_tables, statistics_tables
 from .figure_style import Drawing
-from .results_view import Results, has_mm, rows, setting
+from .results_view import Results, frames, has_mm, rows, setting
 from .tables import Table
 
 
@@ -141,6 +141,8 @@ def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
         "errors of neighbouring images come from the same tie points, and along one strip alone "
         "they form a chain, for which OLS intervals are far too narrow."
     )
+    if "camera" in frames(results) and "regression_camera_pitch" not in drawings:
+        text += " Figures show the ground frame; the camera frame is in the tables."
     pictures = [drawing for name, drawing in drawings.items() if name.startswith("regression")]
     tables = [
         statistics_tables.ordinary_regression(results),
@@ -194,7 +196,7 @@ def _check_points(results: Results, drawings: dict[str, Drawing]) -> Part:
     tables = [statistics_tables.check_points(results, translation_removed=r) for r in (True, False)]
     if not any(table.rows for table in tables):
         none = Paragraph(
-            "The block has no check points, so the accuracy on the ground was not tested."
+            "No check points could be used, so the accuracy on the ground was not tested."
         )
         return Part("check-points", "Check points", (none,))
     text = (

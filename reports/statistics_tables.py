@@ -130,7 +130,8 @@ def decisions(results: Results) -> Table:
 
 def check_points(results: Results, *, translation_removed: bool) -> Table:
     """Check-point differences of every orientation, mean shift removed or kept."""
-    kept = rows(results, "check_points", translation_removed=translation_removed)
+    stated = rows(results, "check_points", translation_removed=translation_removed)
+    kept = [row for row in stated if row["n"]]
     columns = [
         text_column(
             "Orientation", [orientation_label(results, row["orientation"]) for row in kept]
@@ -216,14 +217,18 @@ def _fitted(results: Results) -> list[Row]:
 
 
 def _reasons(results: Results) -> list[str]:
-    """One note per reason for which regressions could not be made."""
-    scopes: dict[str, dict[str, None]] = {}
+    """One note per reason for which regressions could not be made, and the angles it holds for."""
+    angles: dict[tuple[str, str], list[str]] = {}
     for row in rows(results, "regression"):
         if row.get("reason"):
-            scopes.setdefault(row["reason"], {})[
-                f"{row['angle']} ({scope_label(row['scope'])})"
-            ] = None
-    return [f"Not fitted: {', '.join(who)}. Reason: {why}." for why, who in scopes.items()]
+            angles.setdefault((row["reason"], scope_label(row["scope"])), []).append(row["angle"])
+    scopes: dict[tuple[str, str], list[str]] = {}
+    for (why, scope), named in angles.items():
+        scopes.setdefault((why, fmt.joined(named)), []).append(scope)
+    return [
+        f"Not fitted: {named} of {fmt.joined(where)}. Reason: {fmt.prose(why)}."
+        for (why, named), where in scopes.items()
+    ]
 
 
 def _block_rows(kept: Sequence[Row]) -> frozenset[int]:

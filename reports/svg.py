@@ -11,6 +11,7 @@ _USES = re.compile(
     r"<g(?P<clip>[^>]*)>\s*(?P<uses><use xlink:href=\"#(?P<id>[^\"]+)\"[^>]*/>\s*"
     r"(?:<use xlink:href=\"#(?P=id)\"[^>]*/>\s*)*)</g>"
 )
+_BARE_GROUP = re.compile(r"<g(?: id=\"[^\"]*\")?\s*/?>")
 _USE = re.compile(r"x=\"([^\"]*)\" y=\"([^\"]*)\" style=\"([^\"]*)\"")
 
 
@@ -38,6 +39,7 @@ def embeddable(svg: str, name: str, title: str, share: float) -> str:
     svg = _USES.sub(lambda match: _merged(match, shapes), svg)
     svg = re.sub(r"\bd=\"([^\"]*)\"", lambda match: f'd="{_compact(match[1])}"', svg)
     svg = re.sub(r" transform=\"rotate\(-0 [^)]*\)\"", "", svg)
+    svg = _without_bare_groups(svg)
     svg = re.sub(r"(\bid=\"|url\(#|href=\"#)", rf"\g<1>{name}-", svg)
     label = escape(title)
     style = f"--share: {share:.3f}; stroke-linejoin: round; stroke-linecap: butt"
@@ -54,6 +56,21 @@ def _merged(match: re.Match[str], shapes: dict[str, str]) -> str:
     places = [(float(use[1]), float(use[2])) for use in uses if use]
     path = " ".join(_moved(shapes[match["id"]], x, y) for x, y in places)
     return f'<g{match["clip"]}><path d="{path}" style="{looks.pop()}"/></g>'
+
+
+def _without_bare_groups(svg: str) -> str:
+    """Drop groups that carry nothing but an id: nothing refers to them, and layout costs time."""
+    kept: list[bool] = []
+
+    def tag(match: re.Match[str]) -> str:
+        if match[0] == "</g>":
+            return match[0] if kept.pop() else ""
+        keep = _BARE_GROUP.fullmatch(match[0]) is None
+        if not match[0].endswith("/>"):
+            kept.append(keep)
+        return match[0] if keep else ""
+
+    return re.sub(r"<g(?: [^>]*)?>|</g>", tag, svg)
 
 
 def _moved(path: str, x: float, y: float) -> str:

@@ -11,6 +11,7 @@ COARSE_PX = 50.0  # neither stereo viewing nor matching bridges this much parall
 NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
 SKEWED = 1.25  # mean over median from which the median is told beside the mean
 SIGNIFICANT = 0.05
+ALONE = 0.9  # share of the cause from which other angles need no word
 
 
 @dataclass(frozen=True)
@@ -56,9 +57,13 @@ def key_figures(results: Results) -> tuple[KeyFigure, ...]:
     """Parallax from POS, after correction and after relative orientation; check-point accuracy."""
     numbers = verdict(results)
     figures = [
-        _parallax_figure(numbers, "raw", "POS as delivered"),
-        _parallax_figure(numbers, "corrected", "POS, corrected"),
-        _parallax_figure(numbers, "relative", "Relative orientation"),
+        _parallax_figure(numbers, name, label)
+        for name, label in (
+            ("raw", "POS as delivered"),
+            ("corrected", "POS, corrected"),
+            ("relative", "Relative orientation"),
+        )
+        if name != "corrected" or numbers.get("corrected_angles")
     ]
     point = first(results, "check_points", orientation="selected", translation_removed=False)
     if not fmt.is_missing(point.get("rmse_horizontal_m")):
@@ -112,9 +117,17 @@ def _cause(results: Results) -> str:
     cause, raw, relative = (numbers.get(key) for key in ("cause", "raw_px", "relative_px"))
     if cause:
         held = _mean_of(results, "error_sources", fixed=cause)
-        shown = fmt.with_unit(held, "px")
-        kept = f": with {cause} held at its POS value, relative orientation still leaves {shown}"
-        return f"The parallax comes from {cause}{'' if held is None else kept}."
+        every = _mean_of(results, "error_sources", fixed="angles")
+        share = numbers.get("cause_share")
+        most = share is not None and share < ALONE
+        text = f"{'Most of it comes' if most else 'The parallax comes'} from {cause}"
+        if held is not None and every is not None:
+            text += (
+                f": relative orientation with {cause} held at its POS value leaves "
+                f"{fmt.with_unit(held, 'px')}, with all three angles held "
+                f"{fmt.with_unit(every, 'px')}"
+            )
+        return f"{text}."
     if relative and raw / relative < NEAR_RELATIVE:
         return "This is about as good as the images allow, and no angle stands out."
     return "It cannot be laid to one angle alone: held one by one, several keep the parallax high."

@@ -101,6 +101,24 @@ def test_verdict_of_a_block_without_models_says_that_nothing_is_known(area):
     assert "No vertical parallax could be computed" in verdict.paragraph(empty)
 
 
+def test_verdict_gives_the_cause_its_share(area):
+    results = copy.deepcopy(area)
+    results["verdict"] |= {"cause": "kappa", "cause_share": 0.5}
+    said = plain(verdict.paragraph(results))
+    assert "Most of it comes from kappa" in said
+    assert "with all three angles held 22." in said
+
+
+def test_check_points_that_none_could_be_intersected_make_no_table(area):
+    results = copy.deepcopy(area)
+    for row in results["check_points"]:
+        row.update(dict.fromkeys(row.keys() - {"orientation", "translation_removed", "n"}), n=0)
+    results["check_point_residuals"] = []
+    text = html.render(document.build(results))
+    assert 'id="table-check_points_shift_kept"' not in text
+    assert "No check point could be intersected" in text
+
+
 def test_verdict_names_an_interval_that_includes_zero(area):
     results = copy.deepcopy(area)
     for row in results["regression"]:
