@@ -62,8 +62,9 @@ class EstimatedAngles:
 def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
     """What the block as a whole, then every strip in order of flight, leaves undetermined.
 
-    A common rotation of a scope is the mean of the rotations of its images; it is open where its
-    standard deviation, from the covariance of the adjustment, exceeds a tenth of the prior one.
+    A common rotation of a scope is the best weighted mean of the rotations of its images (single
+    undetermined images do not spoil it); it is open where its standard deviation, from the
+    covariance of the adjustment, exceeds a tenth of the prior one.
     """
     everywhere = np.ones(len(angles.image), dtype=bool)
     scopes = [("block", everywhere)]
@@ -83,7 +84,9 @@ def _open_rotations(angles: EstimatedAngles, inside: _Bools) -> Iterator[str]:
     if len(images) == 0:
         return
     covariance = angles.rotation_covariance_rad2[images][:, :, images]
-    variances, axes = np.linalg.eigh(covariance.mean(axis=(0, 2)))
+    each = np.tile(np.eye(3), (len(images), 1))
+    information = each.T @ np.linalg.solve(covariance.reshape(len(each), len(each)), each)
+    variances, axes = np.linalg.eigh(np.linalg.inv(information))
     limit = UNDETERMINED_SHARE * float(angles.prior_sigma_rad[images].min())
     along = _flight_axis(angles.position_m[images])
     for variance, axis in zip(variances, axes.T, strict=True):

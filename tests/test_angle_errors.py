@@ -1,5 +1,6 @@
 """Angle errors: simulated truth, Monte Carlo, invariances, numerical derivatives, real blocks."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera
 from posstats.block import Block, GroundPoints
 from posstats.block_io import read_block
 from posstats.errors import GeometryError
+from posstats.regression import fit_drift
 from posstats.rotation import (
     angles_from_rotation,
     rotation_from_angles,
@@ -222,3 +224,29 @@ def test_seneca_converges_from_errors_of_tens_of_degrees():
     assert found.used.all()
     assert np.sqrt(np.mean((miss / found.sigma_rad[found.used]) ** 2)) < 1.2
     assert np.abs(np.degrees(found.error_rad)).max() > 20.0
+
+
+def test_one_badly_tied_image_is_listed_without_calling_its_strip_unobservable():
+    block = observed_block(true_block(SIDE_OVERLAP), np.random.default_rng(13))
+    ties = block.tie_points
+    last = np.flatnonzero(ties.image == 9)
+    keep = ties.image != 9
+    keep[last[:3]] = True
+    found = errors_of(replace(block, tie_points=ties.subset(keep)))
+    scope, _, strip = found.observability
+    assert scope.images == strip.images == ("i009",)
+    assert scope.unobservable == strip.unobservable == ()
+    assert found.used[:9].all()
+    assert np.isfinite(found.error_rad[9]).all()
+
+
+def test_injected_drift_of_a_real_block_is_found():
+    """IGN block: the omega slope by GLS within 3e-8 rad/s of the one put in."""
+    folder = shared_path("data", "ign-fd1305")
+    injected = json.loads((folder / "injected.json").read_text())
+    found = errors_of(read_block(folder))
+    used = np.flatnonzero(found.used)
+    covariance = found.covariance_rad2[used, 0][:, used, 0]
+    fit = fit_drift(found.time_s[used], found.error_rad[used, 0], covariance)
+    assert fit.slope == pytest.approx(injected["slope_rad_per_s"][0], abs=3e-8)
+    assert len(used) == 60
