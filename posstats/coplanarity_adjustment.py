@@ -25,7 +25,7 @@ from posstats.rotation import AngleSystem, rotation_derivatives, rotation_from_a
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
 
-MAX_IMAGES = 1500  # five dense matrices of (6 n)^2 numbers: 3.2 GB
+MAX_IMAGES = 1500  # some seven dense matrices of (6 n)^2 numbers at once: 4.5 GB
 MAX_ITERATIONS = 60
 _HUBER = 1.345
 _REJECTION = 3.5
