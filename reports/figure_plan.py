@@ -20,9 +20,12 @@ from . import format as fmt
 from .results_view import Results, Row, rows, strips
 
 FloatArray = npt.NDArray[np.float64]
+Label = tuple[FloatArray, str]  # middle in points, text
 Limits = tuple[float, float, float, float]  # west, east, south, north
 
-PAD = 0.06
+PAD = 0.07
+CROWDED = 150  # images from which exposure stations are drawn smaller
+LABEL_LENGTH, LETTER_PT, LINE_PT = 11, 5.0, 10.0  # strip ids in the plan: letters, points
 NARROW = 0.9  # width over height below which coordinates would touch side by side
 MAX_HEIGHT_IN = 3.5  # so that the plan stands on the first page, below the verdict
 BESIDE_IN, BELOW_IN = 1.8, 0.95  # room for axis labels and colour bar, and for axis label and scale
@@ -38,7 +41,7 @@ def block_plan(results: Results) -> style.Drawing | None:
     axis = figure.add_subplot()
     _footprints(axis, images)
     _models(figure, axis, results, images)
-    _strip_labels(axis, results, images)
+    _strip_labels(axis, results, images, limits)
     has_vectors = _check_points(
         axis, rows(results, "check_point_residuals", orientation="pos"), limits
     )
@@ -130,8 +133,8 @@ def _models(figure: Figure, axis: Axes, results: Results, images: Sequence[Row])
         _polylines(axis, part, color=palette(k), lw=3.2, solid_capstyle="butt")
     unknown = [line for line, value in zip(lines, values, strict=True) if value is None]
     _polylines(axis, unknown, color=style.GREY, lw=1.0, ls=":")
-    _polylines(axis, [[p, p] for p in place.values()], color=style.BLACK, lw=2.0,
-               solid_capstyle="round", zorder=3)  # fmt: skip
+    size = 2.2 if len(place) < CROWDED else 1.2
+    axis.plot(*np.array(list(place.values()), dtype=float).T, ".", color=style.BLACK, ms=size)
     if len(edges) > 1:
         _colour_bar(figure, axis, edges, palette)
 
@@ -169,26 +172,55 @@ def _colour_bar(figure: Figure, axis: Axes, edges: list[float], palette: Colorma
     bar.outline.set_linewidth(0.5)
 
 
-def _strip_labels(axis: Axes, results: Results, images: Sequence[Row]) -> None:
+def _strip_labels(axis: Axes, results: Results, images: Sequence[Row], limits: Limits) -> None:
+    """Strip ids beside their first exposures, each where it covers none of the others."""
+    height = (_size(limits)[0] - BELOW_IN) * 72.0
+    points_per_metre = height / (limits[3] - limits[2])
+    taken: list[Label] = []
     for strip in strips(results):
-        part = [row for row in images if row["strip"] == strip]
-        if not part:
+        place = np.array([(r["x_m"], r["y_m"]) for r in images if r["strip"] == strip], dtype=float)
+        if not place.size:
             continue
-        x, y = part[0]["x_m"], part[0]["y_m"]
-        step = np.subtract((x, y), (part[-1]["x_m"], part[-1]["y_m"]))
-        away = step / (np.hypot(*step) or 1.0)
+        text = style.shortened(strip, LABEL_LENGTH)
+        offset = _free_offset(place, points_per_metre, text, taken)
+        taken.append((place[0] * points_per_metre + offset, text))
         axis.annotate(
-            style.shortened(strip),
-            (x, y),
-            xytext=tuple(9.0 * away if away.any() else (6.0, 6.0)),
+            text,
+            (place[0, 0], place[0, 1]),
+            xytext=(offset[0], offset[1]),
             textcoords="offset points",
             ha="center",
             va="center",
             fontsize=7.5,
             fontweight="bold",
             zorder=5,
-            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
+            bbox={"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.75},
         )
+
+
+def _free_offset(
+    place: FloatArray, points_per_metre: float, text: str, taken: Sequence[Label]
+) -> FloatArray:
+    """Offset of a label in points: against the flight if free there, else turned, then farther."""
+    back = place[0] - place[-1]
+    length = float(np.hypot(*back))
+    back = back / length if length else np.array([0.0, 1.0])
+    across = np.array([-back[1], back[0]])
+    directions = (back, back + across, back - across, across, -across)
+    offsets: list[FloatArray] = [
+        reach * d / np.hypot(*d) for reach in (9.0, 18.0, 27.0) for d in directions
+    ]
+    for offset in offsets:
+        label = (place[0] * points_per_metre + offset, text)
+        if not any(_overlap(label, other) for other in taken):
+            return offset
+    return offsets[0]
+
+
+def _overlap(one: Label, other: Label) -> bool:
+    apart = np.abs(one[0] - other[0])
+    width = LETTER_PT * (len(one[1]) + len(other[1])) / 2.0
+    return bool(apart[0] < width + 2.0 and apart[1] < LINE_PT)
 
 
 def _images_behind(axis: Axes, results: Results) -> None:
