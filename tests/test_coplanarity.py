@@ -82,9 +82,7 @@ def test_derivatives_by_the_base_are_central_differences():
     base = arguments(models)[-1]
     for axis in range(3):
         shift = 1e-3 * np.eye(3)[axis]
-        plus, minus = (
-            y_parallax(*arguments(models, base=base + sign * shift)) for sign in (1, -1)
-        )
+        plus, minus = (y_parallax(*arguments(models, base=base + sign * shift)) for sign in (1, -1))
         np.testing.assert_allclose(by_base[:, axis], (plus - minus) / 2e-3, rtol=1e-6, atol=1e-6)
 
 
