@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 COMMAND = Path(sys.executable).with_name("posstats")
-SCENARIO = Path(__file__).resolve().parents[1] / "posstats" / "scenarios" / "area1.toml"
 
 
 def seconds(*arguments: str | Path) -> float:
@@ -25,7 +24,8 @@ def main() -> None:
     runs = parser.parse_args().runs
     with tempfile.TemporaryDirectory() as folder:
         block, out = Path(folder) / "block", Path(folder) / "out"
-        print(f"posstats simulate: {seconds('simulate', '--scenario', SCENARIO, '--out', block):.1f} s")
+        simulation = seconds("simulate", "--scenario", "area1", "--out", block)
+        print(f"posstats simulate: {simulation:.1f} s")
         timings = {
             "posstats --help": ("--help",),
             "posstats check": ("check", block),
@@ -34,7 +34,8 @@ def main() -> None:
         for name, arguments in timings.items():
             seconds(*arguments)
             measured = [seconds(*arguments) for _ in range(runs)]
-            print(f"{name}: median {statistics.median(measured):.2f} s (largest {max(measured):.2f} s)")
+            median = statistics.median(measured)
+            print(f"{name}: median {median:.2f} s (largest {max(measured):.2f} s)")
     peak_kib = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     print(f"largest process: {peak_kib / 1024**2:.2f} GiB")
 

@@ -20,9 +20,8 @@ from posstats.angle_errors import AngleErrors, coplanarity_errors
 from posstats.drift import MIN_LINE_POINTS
 from posstats.regression import BLOCK_SCOPE, angle_sample
 from posstats.rotation import ANGLE_NAMES
-from posstats.scenario import load_scenario
 from posstats.stereo import stereo_models
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 
 _Floats = NDArray[np.float64]
 

@@ -17,9 +17,8 @@ import poselib
 from posstats.coplanarity import base_frames, y_parallax
 from posstats.relative_orientation import orient
 from posstats.rotation import rotation_from_vector
-from posstats.scenario import load_scenario
 from posstats.stereo import StereoModels, stereo_models
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 
 SEED = 1
 DOWN = np.diag([1.0, -1.0, -1.0])  # image frame of posstats <-> camera frame of PoseLib

@@ -20,11 +20,11 @@ from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
 from posstats.parallax import model_rms_px
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
-from posstats.relative_orientation import RelativeOrientation, orient
+from posstats.relative_orientation import Method, RelativeOrientation, orient
 from posstats.rotation import ANGLE_NAMES
-from posstats.selection import Decision, RuleSet, decide, load_rules
+from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
 from posstats.stereo import StereoModels, stereo_models
-from posstats.validation import OutOfSampleParallax, out_of_sample_parallax
+from posstats.validation import out_of_sample_parallax
 
 _Floats = NDArray[np.float64]
 Scope = Literal["block", "strip"]
@@ -32,7 +32,7 @@ ErrorSource = Literal["coplanarity", "adjusted"]
 FrameChoice = Literal["ground", "camera", "auto"]
 Progress = Callable[[str, float], object]
 
-FIXED: tuple[Literal["angles", "omega", "phi", "kappa"], ...] = ("angles", "omega", "phi", "kappa")
+FIXED: tuple[Method, ...] = ("angles", "omega", "phi", "kappa")
 """Right-image angles that the fixed-element method holds at their POS values (Figure 1)."""
 
 
@@ -168,7 +168,7 @@ def analyse(
     robust = settings.robust
     independent = orient(models, "independent", robust=robust)
     dependent = orient(models, "dependent", robust=robust)
-    fixed = {name: orient(models, name, robust=robust) for name in FIXED}
+    fixed = {str(name): orient(models, name, robust=robust) for name in FIXED}
     errors = _angle_errors(block, models, settings, report)
     report("regression", 0.8)
     frames = _frames(models, errors, rules, settings)

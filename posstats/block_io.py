@@ -12,22 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block
-from posstats.block_toml import BlockSettings, parse_settings
-from posstats.block_warnings import block_warnings, settings_warnings, time_warnings
-from posstats.block_writing import write_block, write_orientations
-from posstats.convention import Convention
 from posstats.errors import BlockFormatError, GeometryError
-from posstats.frames import GroundFrame
-from posstats.orientation_files import (
+from posstats.formats.block_toml import BlockSettings, parse_settings
+from posstats.formats.block_warnings import block_warnings, settings_warnings, time_warnings
+from posstats.formats.block_writing import write_block, write_orientations
+from posstats.formats.convention import Convention
+from posstats.formats.orientation_files import (
     PosRows,
     pos_orientations,
     read_adjusted,
     read_pos_rows,
     source_table,
 )
-from posstats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
-from posstats.tables import Table, read_bytes, read_table, sha256
-from posstats.toml_section import FILE
+from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
+from posstats.formats.tables import Table, read_bytes, read_table, sha256
+from posstats.formats.toml_section import FILE
+from posstats.frames import GroundFrame
 
 _Floats = NDArray[np.float64]
 

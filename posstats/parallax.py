@@ -80,9 +80,7 @@ def _statistics(
     valued = chosen & np.isfinite(rms_px)
     max_px, min_px, mean_px = _max_min_mean(rms_px[valued])
     max_mm, min_mm, mean_mm = _max_min_mean((rms_px * models.pixel_size_mm)[valued])
-    return StripParallax(
-        strip, int(valued.sum()), max_px, min_px, mean_px, max_mm, min_mm, mean_mm
-    )
+    return StripParallax(strip, int(valued.sum()), max_px, min_px, mean_px, max_mm, min_mm, mean_mm)
 
 
 def _max_min_mean(values: _Floats) -> tuple[float, float, float]:

@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from posstats.errors import BlockFormatError, PosstatsError
+from posstats.formats.toml_section import nearest
 from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit, FitKind
-from posstats.toml_section import nearest
 
 Form = Literal["none", "constant", "linear"]
 
@@ -67,15 +67,30 @@ class Decision:
     reason: str
 
 
-class Parallax(Protocol):
-    """Mean y-parallax of the same models without and with corrections, px."""
+@dataclass(frozen=True)
+class OutOfSampleParallax:
+    """Mean RMS y-parallax over the same models, px, before and after correction; NaN if untestable.
+
+    Attributes
+    ----------
+    n_models
+        Models that could be tested.
+    method
+        How the images of the test were kept out of the fit, in words.
+    """
 
     raw_px: float
     corrected_px: float
+    n_models: int
     method: str
 
+    @property
+    def gain(self) -> float:
+        """Share of the mean parallax that the correction saves; NaN if untestable."""
+        return 1.0 - self.corrected_px / self.raw_px
 
-OutOfSampleTest = Callable[[Sequence[Decision]], Parallax]
+
+OutOfSampleTest = Callable[[Sequence[Decision]], OutOfSampleParallax]
 
 
 def load_rules(name_or_path: str | Path) -> RuleSet:
@@ -253,7 +268,7 @@ def _proven(
 
 def _tried(
     proposals: list[Decision], kept: list[int], waiting: list[int], out_of_sample: OutOfSampleTest
-) -> tuple[float, dict[int, Parallax]]:
+) -> tuple[float, dict[int, OutOfSampleParallax]]:
     """Parallax with what is kept so far, and with each waiting correction added to it."""
 
     def only(wanted: list[int]) -> list[Decision]:

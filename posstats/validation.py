@@ -1,7 +1,6 @@
 """What a correction is worth on images that its fit has not seen."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ from posstats.regression import (
     FitError,
     angle_sample,
 )
-from posstats.selection import Decision
+from posstats.selection import Decision, OutOfSampleParallax
 from posstats.stereo import StereoModels
 
 _Floats = NDArray[np.float64]
@@ -25,29 +24,6 @@ _Ints = NDArray[np.intp]
 
 LEAVE_STRIP_OUT = "leaving one strip out"
 LEAVE_HALF_OUT = "fitting one half of a strip, testing on the other"
-
-
-@dataclass(frozen=True)
-class OutOfSampleParallax:
-    """Mean RMS y-parallax over the same models, px, before and after correction; NaN if untestable.
-
-    Attributes
-    ----------
-    n_models
-        Models that could be tested.
-    method
-        How the images of the test were kept out of the fit, in words.
-    """
-
-    raw_px: float
-    corrected_px: float
-    n_models: int
-    method: str
-
-    @property
-    def gain(self) -> float:
-        """Share of the mean parallax that the correction saves; NaN if untestable."""
-        return 1.0 - self.corrected_px / self.raw_px
 
 
 def out_of_sample_parallax(

@@ -5,9 +5,8 @@ from pathlib import Path
 
 from posstats.block import Block
 from posstats.block_io import read_block, write_block
-from posstats.scenario import load_scenario
 from posstats.stereo import stereo_models
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 
 from .output import staged_folder
 

@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 
 from posstats.block import Block
-from posstats.scenario import load_scenario
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 
 OMEGA_CONSTANT_RAD = 0.018
 OMEGA_DRIFT_RAD_PER_S = 4.68e-7

@@ -93,7 +93,7 @@ def test_a_boresight_shows_in_the_camera_frame_only():
         errors={
             "omega": {"noise_rad": 1.6e-5},
             "pitch": {"constant_rad": 0.018},
-        }
+        },
     )
     ground = analyse(boresight)
     assert block_row(ground, "omega")["r_squared"] < 0.05

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from posstats.block_toml import parse_settings
+from posstats.formats.block_toml import parse_settings
 
 GOOD = """\
 [block]

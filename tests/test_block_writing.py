@@ -12,8 +12,8 @@ from perfect_block import edit, largest_parallax_mm, perfect_block, written
 from posstats.block import Block
 from posstats.block_io import read_block, write_block, write_orientations
 from posstats.camera import Distortion
-from posstats.convention import Convention
 from posstats.errors import GeometryError
+from posstats.formats.convention import Convention
 from posstats.frames import GroundFrame
 from posstats.rotation import rotation_from_vector, vector_from_rotation
 

@@ -36,9 +36,8 @@ from posstats.rotation import (
     vector_from_rotation,
     wrapped,
 )
-from posstats.scenario import load_scenario
 from posstats.stereo import stereo_models
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 
 SYSTEMS = ("omega-phi-kappa", "phi-omega-kappa")
 METHODS = ("independent", "dependent", "angles", "omega", "phi", "kappa")

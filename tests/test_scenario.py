@@ -10,7 +10,7 @@ import pytest
 from helpers import shared_path
 
 from posstats.errors import BlockFormatError
-from posstats.scenario import load_scenario
+from posstats.synthetic.scenario import load_scenario
 
 MINIMAL = {
     "block": {"name": "small"},

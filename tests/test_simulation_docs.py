@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from posstats.scenario import Scenario, load_scenario
 from posstats.stereo import stereo_models
 from posstats.synthetic import simulate
+from posstats.synthetic.scenario import Scenario, load_scenario
 
 TEXT = (Path(__file__).resolve().parents[1] / "docs" / "simulation.md").read_text(encoding="utf-8")
 

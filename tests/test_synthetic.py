@@ -13,9 +13,9 @@ from test_scenario import changed
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.rotation import rotation_from_angles, vector_from_rotation, wrapped
-from posstats.scenario import AngleError, load_scenario
 from posstats.stereo import cross_strip_pairs, stereo_models
 from posstats.synthetic import simulate
+from posstats.synthetic.scenario import AngleError, load_scenario
 
 SYSTEMS = ("omega-phi-kappa", "phi-omega-kappa")
 LAMBERT_93 = {"crs": "EPSG:2154", "origin_m": [760_000.0, 6_300_000.0]}

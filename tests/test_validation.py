@@ -9,10 +9,9 @@ from posstats.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
 from posstats.correction import corrected, predicted_errors
 from posstats.parallax import model_rms_px
 from posstats.regression import regress
-from posstats.scenario import load_scenario
 from posstats.selection import decide, load_rules
 from posstats.stereo import stereo_models
-from posstats.synthetic import simulate
+from posstats.synthetic import load_scenario, simulate
 from posstats.validation import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax
 
 

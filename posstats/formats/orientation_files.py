@@ -8,10 +8,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from posstats.block import Orientations, OrientationTable
-from posstats.block_toml import BlockSettings
-from posstats.convention import Convention
-from posstats.tables import Table
-from posstats.times import read_times
+from posstats.formats.block_toml import BlockSettings
+from posstats.formats.convention import Convention
+from posstats.formats.tables import Table
+from posstats.formats.times import read_times
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -10,7 +10,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import Any, TypeVar, get_type_hints
 
 from posstats.errors import BlockFormatError
-from posstats.toml_section import nearest
+from posstats.formats.toml_section import nearest
 
 T = TypeVar("T")
 TableT = TypeVar("TableT", bound="Table")

@@ -12,8 +12,17 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from posstats.camera import Camera, Distortion, DistortionModel
-from posstats.checked_table import Rule, Table, number, one_of, read_table, several, text, whole
 from posstats.errors import BlockFormatError
+from posstats.formats.checked_table import (
+    Rule,
+    Table,
+    number,
+    one_of,
+    read_table,
+    several,
+    text,
+    whole,
+)
 from posstats.rotation import AngleSystem
 
 _MAX_IMAGES = 100_000

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block
-from posstats.block_toml import BlockSettings
+from posstats.formats.block_toml import BlockSettings
 from posstats.stereo import MIN_MODEL_POINTS, stereo_models
 
 _SHOWN = 5

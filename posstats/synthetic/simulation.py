@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Accuracy, Block, GroundPoints, Orientations
-from posstats.block_warnings import block_warnings
-from posstats.flight_plan import FlightPlan, fly
+from posstats.formats.block_warnings import block_warnings
 from posstats.frames import GroundFrame, require_map_grid
 from posstats.rotation import (
     angles_from_rotation,
@@ -19,10 +18,11 @@ from posstats.rotation import (
     rotation_from_vector,
     wrapped,
 )
-from posstats.scenario import AngleError, Scenario
-from posstats.synthetic_ground import Surface, TruePoints, to_computing, true_points
-from posstats.synthetic_images import imaged, measured, reach_m
-from posstats.synthetic_streams import Streams, random_streams
+from posstats.synthetic.flight_plan import FlightPlan, fly
+from posstats.synthetic.ground import Surface, TruePoints, to_computing, true_points
+from posstats.synthetic.images import imaged, measured, reach_m
+from posstats.synthetic.scenario import AngleError, Scenario
+from posstats.synthetic.streams import Streams, random_streams
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -34,7 +34,7 @@ def simulate(scenario: Scenario, seed: int | None = None) -> Block:
     Parameters
     ----------
     scenario
-        What is flown and what errs; see `posstats.scenario.load_scenario`.
+        What is flown and what errs; see `posstats.synthetic.scenario.load_scenario`.
     seed
         Of the random numbers; the scenario's own where None. Equal seeds give equal blocks.
 

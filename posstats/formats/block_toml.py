@@ -10,8 +10,8 @@ import numpy as np
 from posstats.block import Accuracy
 from posstats.camera import Camera, Distortion, DistortionModel
 from posstats.errors import GeometryError
+from posstats.formats.toml_section import FILE, TomlSection, line_of_section, nearest
 from posstats.frames import require_map_grid
-from posstats.toml_section import FILE, TomlSection, line_of_section, nearest
 
 FileAngleSystem = Literal["omega-phi-kappa", "phi-omega-kappa", "roll-pitch-heading"]
 AngleUnit = Literal["deg", "rad", "gon"]

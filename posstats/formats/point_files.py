@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from posstats.block import GroundPoints, TiePoints
 from posstats.camera import Camera
 from posstats.errors import GeometryError
+from posstats.formats.tables import Table
 from posstats.frames import GroundFrame
-from posstats.tables import Table
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

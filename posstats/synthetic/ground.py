@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.errors import GeometryError
-from posstats.flight_plan import FlightPlan, footprint_m
 from posstats.frames import GroundFrame
-from posstats.scenario import PointSpec, Scenario
-from posstats.synthetic_streams import Streams
+from posstats.synthetic.flight_plan import FlightPlan, footprint_m
+from posstats.synthetic.scenario import PointSpec, Scenario
+from posstats.synthetic.streams import Streams
 
 _Floats = NDArray[np.float64]
 _Ids = NDArray[np.object_]

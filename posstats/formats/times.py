@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.tables import Table
+from posstats.formats.tables import Table
 
 _Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.rotation import rotation_from_angles
-from posstats.scenario import Scenario
+from posstats.synthetic.scenario import Scenario
 
 _Floats = NDArray[np.float64]
 _Ids = NDArray[np.object_]

@@ -9,10 +9,10 @@ from scipy.spatial import cKDTree
 from posstats.block import Orientations, TiePoints
 from posstats.camera import Camera
 from posstats.errors import GeometryError
-from posstats.flight_plan import FlightPlan
-from posstats.scenario import Scenario
-from posstats.synthetic_ground import Surface, TruePoints
-from posstats.synthetic_streams import Streams
+from posstats.synthetic.flight_plan import FlightPlan
+from posstats.synthetic.ground import Surface, TruePoints
+from posstats.synthetic.scenario import Scenario
+from posstats.synthetic.streams import Streams
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

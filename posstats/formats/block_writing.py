@@ -11,12 +11,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from posstats.block import Block, GroundPoints, Orientations, OrientationTable
-from posstats.block_toml import DISTORTION_COEFFICIENTS, RADIANS_PER_UNIT, settings_from
 from posstats.camera import Camera
-from posstats.convention import Convention
 from posstats.errors import BlockFormatError, GeometryError
+from posstats.formats.block_toml import DISTORTION_COEFFICIENTS, RADIANS_PER_UNIT, settings_from
+from posstats.formats.convention import Convention
+from posstats.formats.toml_section import FILE
 from posstats.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
-from posstats.toml_section import FILE
 
 _Floats = NDArray[np.float64]
 
