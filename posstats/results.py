@@ -10,6 +10,7 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from posstats import __version__
 from posstats.analysis import Analysis
@@ -155,7 +156,7 @@ def _verdict(analysis: Analysis) -> Row:
     for name, rms_px in levels.items():
         mean = block_statistics(analysis.models, rms_px)
         row |= {f"{name}_px": mean.mean_px, f"{name}_mm": mean.mean_mm}
-        row[f"{name}_median_px"] = float(np.median(rms_px[np.isfinite(rms_px)]))
+        row[f"{name}_median_px"] = _median(rms_px)
     row |= _cause(analysis)
     row["corrected_angles"] = list(
         dict.fromkeys(each.angle for each in analysis.chosen.decisions if each.correct)
@@ -169,8 +170,8 @@ def _cause(analysis: Analysis) -> Row:
     An angle is named when holding it alone keeps more than half of what holding all three
     keeps, and that is more than relative orientation leaves anyway.
     """
-    least = _mean_px(analysis.dependent)
-    kept = {name: _mean_px(each) - least for name, each in analysis.fixed.items()}
+    least = _mean_px(analysis, analysis.dependent)
+    kept = {name: _mean_px(analysis, each) - least for name, each in analysis.fixed.items()}
     total = kept.pop("angles")
     worst = max(kept, key=lambda angle: kept[angle])
     named = total > least and kept[worst] > 0.5 * total
@@ -180,9 +181,14 @@ def _cause(analysis: Analysis) -> Row:
     }
 
 
-def _mean_px(orientation: RelativeOrientation) -> float:
-    rms_px = orientation.y_parallax_rms_px
-    return float(rms_px[np.isfinite(rms_px)].mean())
+def _mean_px(analysis: Analysis, orientation: RelativeOrientation) -> float:
+    return block_statistics(analysis.models, orientation.y_parallax_rms_px).mean_px
+
+
+def _median(rms_px: NDArray[np.float64]) -> float | None:
+    """Median over the models that have a value."""
+    valued = rms_px[np.isfinite(rms_px)]
+    return float(np.median(valued)) if len(valued) else None
 
 
 def _expected_noise_px(analysis: Analysis) -> float:

@@ -230,3 +230,12 @@ def test_a_low_cost_drone_runs_end_to_end():
     assert np.isfinite(drone.raw_px).sum() == 63
     assert np.nanmedian(drone.raw_px) == pytest.approx(279.0, rel=0.03)
     assert np.nanmedian(drone.independent.y_parallax_rms_px) <= 1.3
+
+
+def test_models_of_too_few_points_are_listed_without_a_value():
+    sparse = small_block(tie_points={"per_model": 3})
+    values = results(analyse(sparse))
+    assert {row["pos_px"] for row in values["models"] if row["n_points"] < 6} == {None}
+    few = [row for row in values["models"] if row["n_points"] < 6]
+    assert few
+    assert {row["status"] for row in few} == {"fewer than 6 points"}
