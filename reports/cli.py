@@ -37,11 +37,11 @@ def _clear_errors(command: Callable[..., None]) -> Callable[..., None]:
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="posstats")
 def cli() -> None:
-    r"""Measure, explain and correct the errors of GNSS/INS orientations of aerial photographs.
+    """Measure, explain and correct the errors of GNSS/INS orientations of aerial photographs.
 
     \b
     Example:
-      posstats simulate --scenario area1-small.toml --out block
+      posstats simulate --scenario area1-small --out block
       posstats check block
       posstats analyse block --out report
     """
@@ -96,7 +96,7 @@ def analyse(
     robust: bool,
     no_pdf: bool,
 ) -> None:
-    r"""Analyse the block folder BLOCK and write its report.
+    """Analyse the block folder BLOCK and write its report.
 
     Writes results.json, corrected_orientations.csv, tables/*.csv, figures/*.svg, report.html
     and report.pdf. Files of the same names are replaced.
@@ -116,17 +116,21 @@ def analyse(
 
 @cli.command()
 @click.option(
-    "--scenario", type=FOLDER, required=True, help="Scenario file (TOML); see docs/simulation.md."
+    "--scenario",
+    type=FOLDER,
+    required=True,
+    metavar="FILE",
+    help="Scenario file (TOML, see docs/simulation.md), or one of area1, area1-small, area2, area3.",
 )
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
 @click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
 @_clear_errors
 def simulate(scenario: Path, out: Path, seed: int | None) -> None:
-    r"""Simulate a block of known truth, as a block folder.
+    """Simulate a block of known truth, as a block folder.
 
     \b
     Example:
-      posstats simulate --scenario area1-small.toml --out block --seed 7
+      posstats simulate --scenario area1-small --out block --seed 7
     """
     from .block_commands import simulate_block
 
@@ -138,7 +142,7 @@ def simulate(scenario: Path, out: Path, seed: int | None) -> None:
 @click.argument("block", type=FOLDER)
 @_clear_errors
 def check(block: Path) -> None:
-    r"""Validate the block folder BLOCK and print a summary.
+    """Validate the block folder BLOCK and print a summary.
 
     Exit code 1 with the findings if the block is refused.
 

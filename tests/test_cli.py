@@ -57,6 +57,13 @@ def test_help_names_the_commands_with_an_example():
         assert word in run.stdout
 
 
+@pytest.mark.parametrize("command", ["analyse", "simulate", "check"])
+def test_help_shows_an_example_on_its_own_lines(command):
+    text = posstats(command, "--help").stdout
+    assert "\n  Example:\n" in text
+    assert "\\b" not in text
+
+
 def test_the_version_is_told():
     assert __version__ in posstats("--version").stdout
 
