@@ -120,7 +120,7 @@ def analyse(
     type=FOLDER,
     required=True,
     metavar="FILE",
-    help="Scenario file (TOML, see docs/simulation.md), or one of area1, area1-small, area2, area3.",
+    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, area3.",
 )
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
 @click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
