@@ -1,7 +1,7 @@
 """The camera: interior orientation and distortion."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from posstats.errors import GeometryError
 
 DistortionModel = Literal["none", "radial", "brown"]
-_INVERSION_STEPS = 50
+_INVERSION_STEPS = 20
+_CONVERGED = 1e-10  # of a Newton step: the next one would be of the order of its square
+_RADII = 1000
 
 
 @dataclass(frozen=True)
@@ -41,26 +43,81 @@ class Distortion:
             axis=-1,
         )
 
+    def jacobian(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives (..., 2, 2) of the measured u', v' (rows) by the ideal u, v (columns)."""
+        u, v = uv[..., 0], uv[..., 1]
+        r2 = u * u + v * v
+        radial = 1.0 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
+        growth = 2.0 * (self.k1 + r2 * (2.0 * self.k2 + r2 * 3.0 * self.k3))
+        jacobian = np.empty((*uv.shape, 2))
+        jacobian[..., 0, 0] = radial + growth * u * u + 2.0 * self.p1 * v + 6.0 * self.p2 * u
+        jacobian[..., 1, 1] = radial + growth * v * v + 6.0 * self.p1 * v + 2.0 * self.p2 * u
+        jacobian[..., 0, 1] = growth * u * v + 2.0 * self.p1 * u + 2.0 * self.p2 * v
+        jacobian[..., 1, 0] = jacobian[..., 0, 1]
+        return jacobian
+
     def undistorted(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Ideal from measured coordinates, by fixed-point iteration to 1e-14.
+        """Ideal from measured coordinates, by Newton's method to rounding.
+
+        Of several ideal points that are imaged alike, it is the one that is met first on the way
+        out from the principal point.
 
         Raises
         ------
         GeometryError
-            Where the distortion cannot be inverted (coefficients far too large for the format).
+            Where there is none: outwards of where the image folds back on itself, because the
+            coefficients do not hold there.
         """
         if self.model == "none":
             return uv
-        ideal = uv.copy()
-        for _ in range(_INVERSION_STEPS):
-            with np.errstate(over="ignore", invalid="ignore"):  # divergence is caught below
-                step = uv - self.distorted(ideal)
-            ideal += step
-            if not np.all(np.isfinite(step)):
-                break
-            if np.abs(step).max(initial=0.0) < 1e-14:
-                return ideal
+        with np.errstate(all="ignore"):  # what is not finite never converges, and is refused
+            ideal = self._radially_undistorted(uv)
+            for _ in range(_INVERSION_STEPS):
+                step, determinant = self._newton_step(uv, ideal)
+                ideal = ideal + step
+                if np.all(np.abs(step) < _CONVERGED) and np.all(determinant > 0.0):
+                    return ideal
         raise GeometryError("the lens distortion cannot be inverted over the image format")
+
+    def _newton_step(
+        self, uv: NDArray[np.float64], ideal: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The step (..., 2) towards the ideal point of `uv`, and the Jacobian's determinant."""
+        j = self.jacobian(ideal)
+        missing = uv - self.distorted(ideal)
+        determinant = j[..., 0, 0] * j[..., 1, 1] - j[..., 0, 1] * j[..., 1, 0]
+        cofactors = np.stack(
+            [
+                j[..., 1, 1] * missing[..., 0] - j[..., 0, 1] * missing[..., 1],
+                j[..., 0, 0] * missing[..., 1] - j[..., 1, 0] * missing[..., 0],
+            ],
+            axis=-1,
+        )
+        return cofactors / determinant[..., None], determinant
+
+    def _radially_undistorted(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+        """A start within Newton's reach: the radial part alone, by a table up to its fold."""
+        measured = np.linalg.norm(uv, axis=-1)
+        reach = self._fold_radius()
+        if np.isinf(reach):
+            reach = 2.0 * measured.max(initial=0.0)
+            while self._radially_distorted(reach) < measured.max(initial=0.0):
+                reach *= 2.0
+        radii = np.linspace(0.0, reach, _RADII)
+        ideal = np.interp(measured, self._radially_distorted(radii), radii)
+        scale = np.divide(ideal, measured, out=np.ones_like(measured), where=measured > 0.0)
+        start: NDArray[np.float64] = uv * scale[..., None]
+        return start
+
+    def _radially_distorted(self, radius: Any) -> Any:
+        r2 = radius * radius
+        return radius * (1.0 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3)))
+
+    def _fold_radius(self) -> float:
+        """Radius from which on the radial part no longer grows; infinite if it always does."""
+        roots = np.roots([7.0 * self.k3, 5.0 * self.k2, 3.0 * self.k1, 1.0])  # in r squared
+        r2 = roots.real[(np.abs(roots.imag) <= 1e-9 * np.abs(roots)) & (roots.real > 0.0)]
+        return float(np.sqrt(r2.min(initial=np.inf)))
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,12 @@ def test_millimetres_are_x_right_y_up_from_the_principal_point(folder) -> None:
 
 @pytest.mark.parametrize(
     "distortion",
-    [Distortion("radial", -0.08, 0.03), Distortion("brown", -0.08, 0.03, 1e-3, 5e-4, -4e-4)],
+    [
+        Distortion("radial", -0.08, 0.03),
+        Distortion("radial", -0.45),  # the corners come in by a quarter
+        Distortion("brown", -0.08, 0.03, 1e-3, 5e-4, -4e-4),
+        Distortion("brown", -0.5, 0.1, 0.02, 2e-3, -2e-3),
+    ],
 )
 def test_distortion_is_taken_off(tmp_path, distortion) -> None:
     block = read_block(written(perfect_block("EPSG:2154", distortion=distortion), tmp_path))
