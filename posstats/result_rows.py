@@ -1,6 +1,6 @@
 """Rows of results.json, one function per list; ``docs/results.md`` names every key."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -137,24 +137,34 @@ def _means(analysis: Analysis, key: str, name: str, rms_px: _Floats) -> Iterator
         }
 
 
-def angle_error_rows(ground: FrameAnalysis) -> list[Row]:
-    """Angle error of every image, ground frame."""
-    errors = ground.errors
-    sigma = errors.sigma_rad
+def angle_error_rows(frames: Sequence[FrameAnalysis]) -> list[Row]:
+    """Angle errors of every image, in every frame that was analysed."""
+    errors = frames[0].errors
+    columns = {
+        key: values
+        for frame in frames
+        for axis, angle in enumerate(_angle_names(frame))
+        for key, values in (
+            (f"{angle}_rad", frame.errors.error_rad[:, axis]),
+            (f"sigma_{angle}_rad", frame.errors.sigma_rad[:, axis]),
+        )
+    }
     return [
         {"image": errors.image[k], "strip": errors.strip[k], "time_s": errors.time_s[k]}
-        | {f"{name}_rad": errors.error_rad[k, axis] for axis, name in enumerate(ANGLE_NAMES)}
-        | {f"sigma_{name}_rad": sigma[k, axis] for axis, name in enumerate(ANGLE_NAMES)}
+        | {key: values[k] for key, values in columns.items()}
         | {"used": errors.used[k]}
         for k in range(len(errors))
     ]
 
 
+def _angle_names(frame: FrameAnalysis) -> tuple[str, ...]:
+    return ANGLE_NAMES if frame.frame == "ground" else CAMERA_ANGLE_NAMES
+
+
 def angle_error_summary_rows(frame: FrameAnalysis) -> Iterator[Row]:
     """Size of the angle errors in one frame."""
     errors = frame.errors
-    names = ANGLE_NAMES if frame.frame == "ground" else CAMERA_ANGLE_NAMES
-    for axis, angle in enumerate(names):
+    for axis, angle in enumerate(_angle_names(frame)):
         used = errors.error_rad[errors.used, axis]
         sigma = errors.sigma_rad[errors.used, axis]
         any_used = len(used) > 0

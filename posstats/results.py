@@ -61,7 +61,7 @@ def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]
             "parallax": parallax_rows(analysis),
             "models": model_rows(analysis),
             "error_sources": error_source_rows(analysis),
-            "angle_errors": angle_error_rows(analysis.frames[0]),
+            "angle_errors": angle_error_rows(analysis.frames),
             "angle_error_summary": [
                 row for frame in analysis.frames for row in angle_error_summary_rows(frame)
             ],

@@ -8,6 +8,8 @@ from typing import Any
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.markers import MarkerStyle
+from matplotlib.path import Path
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
@@ -101,6 +103,15 @@ def _plain_text(figure: Figure) -> None:
     """Ids are shown as they are, wherever a text was made before the setting took hold."""
     for artist in figure.findobj(Text):
         artist.set_parse_math(False)
+
+
+def dots(colour: str, size: float) -> dict[str, Any]:
+    """Look of round dots of a size in points, each a stroke of no length with round ends.
+
+    A circle would be eight curves, and pages hold hundreds of dots.
+    """
+    point = MarkerStyle(Path([(-1.0, 0.0), (1.0, 0.0)]), capstyle="round")
+    return {"marker": point, "ls": "", "ms": 0.01, "mew": size, "color": colour}
 
 
 def strip_style(strips: Sequence[str]) -> dict[str, tuple[str, str]]:

@@ -102,7 +102,8 @@ def prose(text: str) -> str:
         lambda match: f"{match[1]}\u00a0×\u00a0{power_of_ten(int(match[2]))}",
         text,
     )
-    return re.sub(r"\bR2\b", "R²", powers)
+    signs = re.sub(r"(?<![\w-])-(?=\d)", MINUS, powers)
+    return re.sub(r"\bR2\b", "R²", signs)
 
 
 def joined(words: Iterable[str], conjunction: str = "and") -> str:

@@ -8,6 +8,7 @@ from markupsafe import Markup
 from . import fonts
 from .document import ReportDocument
 from .figure_style import Drawing
+from .tables import Column
 
 TEMPLATE = "block_report.html.j2"
 
@@ -27,9 +28,17 @@ def render(document: ReportDocument) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["svg"] = _svg
+    environment.filters["cell_class"] = _cell_class
     css = resources.files("posstats.templates").joinpath("report.css").read_text(encoding="utf-8")
     uris = {weight: fonts.data_uri(document.text, weight) for weight in fonts.WEIGHTS}
     return environment.get_template(TEMPLATE).render(report=document, css=Markup(css), fonts=uris)  # noqa: S704
+
+
+def _cell_class(column: Column) -> Markup:
+    """Attribute of the cells of a column; none for short words, the most frequent kind."""
+    names = [str(column.align)] if column.align != "left" else []
+    names += ["long"] if column.has_long_words else []
+    return Markup(f' class="{" ".join(names)}"' if names else "")  # noqa: S704 - names of ours
 
 
 def _svg(drawing: Drawing) -> Markup:

@@ -9,6 +9,7 @@ from .results_view import (
     Results,
     Row,
     first,
+    mean_over_models,
     orientation_label,
     rows,
     strips,
@@ -16,7 +17,7 @@ from .results_view import (
 )
 from .tables import Column, Table, aligned_column, count_column, number_column, text_column
 
-SHOWN_MODELS = 30
+SHOWN_MODELS = 15
 
 
 def by_strip(results: Results, unit: str) -> Table:
@@ -28,7 +29,7 @@ def by_strip(results: Results, unit: str) -> Table:
     for method, words in METHODS.items():
         part = [first(results, "parallax", strip=s, method=method) for s in kept]
         if any(not fmt.is_missing(row.get("mean_px")) for row in part):
-            columns += _extremes(results, part, method, unit, words)
+            columns += _extremes(results, part, unit, words)
     place = "on the image, " if unit == "px" else "at image scale, "
     caption = (
         f"Vertical parallax by strip {place}{unit}: maximum, minimum and mean over the stereo "
@@ -41,14 +42,12 @@ def by_strip(results: Results, unit: str) -> Table:
     return Table(f"parallax_{unit}", caption, tuple(columns), notes, frozenset({len(kept)}))
 
 
-def _extremes(
-    results: Results, part: Sequence[Row], method: str, unit: str, words: str
-) -> list[Column]:
+def _extremes(results: Results, part: Sequence[Row], unit: str, words: str) -> list[Column]:
     values = {name: [row.get(f"{name}_{unit}") for row in part] for name in ("max", "min", "mean")}
     block = {
         "max": max(fmt.present(values["max"]), default=None),
         "min": min(fmt.present(values["min"]), default=None),
-        "mean": _mean_over_models(results, part, values["mean"], method),
+        "mean": mean_over_models(results, part, f"mean_{unit}"),
     }
     decimals = fmt.shared_decimals([v for column in values.values() for v in column])
     return [
@@ -60,19 +59,6 @@ def _extremes(
         )
         for name, column in values.items()
     ]
-
-
-def _mean_over_models(
-    results: Results, part: Sequence[Row], means: Sequence[float | None], method: str
-) -> float | None:
-    """Mean over all models: strip means weighted by the models that have a value."""
-    total, weight = 0.0, 0
-    for row, mean in zip(part, means, strict=True):
-        models = rows(results, "models", strip=row.get("strip"))
-        n = len(fmt.present(model[f"{method}_px"] for model in models))
-        if mean is not None and n:
-            total, weight = total + n * mean, weight + n
-    return total / weight if weight else None
 
 
 def by_model(results: Results) -> Table:

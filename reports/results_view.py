@@ -1,7 +1,9 @@
 """Reading the results dictionary (``results.json``): selections of rows, order of strips, words."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
+
+from . import format as fmt
 
 Results = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -51,9 +53,28 @@ def strips_with_models(results: Results) -> list[str]:
     return [strip for strip in strips(results) if strip in present]
 
 
+def mean_over_models(
+    results: Results, per_strip: Iterable[Row], key: str = "mean_px"
+) -> float | None:
+    """Mean over the models of the block: strip means weighted by the models of their strips."""
+    total, weight = 0.0, 0
+    for row in per_strip:
+        n = row.get("n_models")
+        if n is None:  # held and corrected angles: as many as can be oriented
+            n = first(results, "parallax", strip=row["strip"], method="dependent").get("n_models")
+        if n and not fmt.is_missing(row.get(key)):
+            total, weight = total + n * row[key], weight + n
+    return total / weight if weight else None
+
+
 def setting(results: Results, name: str, default: str = "") -> str:
     """One setting of the analysis as text."""
     return str((results.get("settings") or {}).get(name) or default)
+
+
+def decided_by_strip(results: Results) -> bool:
+    """Whether corrections were decided strip by strip, not for the block as a whole."""
+    return setting(results, "scope", "block") == "strip"
 
 
 def verdict(results: Results) -> Row:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from . import format as fmt
-from . import parallax_tables, statistics_tables
+from . import parallax_tables, regression_tables, statistics_tables
 from .figure_style import Drawing
-from .results_view import Results, frames, has_mm, rows, setting
+from .results_view import Results, decided_by_strip, has_mm, rows, setting
 from .tables import Table
 
 
@@ -141,12 +141,12 @@ def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
         "errors of neighbouring images come from the same tie points, and along one strip alone "
         "they form a chain, for which OLS intervals are far too narrow."
     )
-    if "camera" in frames(results) and "regression_camera_pitch" not in drawings:
-        text += " Figures show the ground frame; the camera frame is in the tables."
+    if setting(results, "frame") == "camera":
+        text += " The figures show the frame of the corrections: angles about the camera's axes."
     pictures = [drawing for name, drawing in drawings.items() if name.startswith("regression")]
     tables = [
-        statistics_tables.ordinary_regression(results),
-        statistics_tables.generalised_regression(results),
+        regression_tables.ordinary_regression(results),
+        regression_tables.generalised_regression(results),
     ]
     reasons = () if tables[0].rows else tuple(Paragraph(note) for note in tables[0].notes[2:])
     return Part(
@@ -173,17 +173,24 @@ def _decisions(results: Results) -> Part:
                 [(row["frame"], fmt.number(row["out_of_sample_px"])) for row in compared],
             )
         )
-    return Part(
-        "decisions", "Decisions", (*content, *_filled([statistics_tables.decisions(results)]))
-    )
+    if decided_by_strip(results):
+        content += _filled([regression_tables.decisions_by_strip(results)])
+    content += _filled([regression_tables.decisions(results)])
+    return Part("decisions", "Decisions", tuple(content))
 
 
 def _corrected(results: Results, drawings: dict[str, Drawing]) -> Part:
     text = (
         "Corrected angle = POS angle minus fitted error. The parallax is computed again from the "
-        "corrected POS, for each angle alone (with the regression line, whether or not it was "
-        "selected) and for the selected set."
+        "corrected POS, for each of omega, phi and kappa alone and for the selected set. “Alone” "
+        "is by definition the OLS line of that angle in the ground frame, whatever was decided."
     )
+    forms = {row["form"] for row in rows(results, "selection") if row["correct"]}
+    if setting(results, "frame") == "camera" or "constant" in forms:
+        text += (
+            " The selected set is of another kind (a constant, or about the camera's axes), so it "
+            "can do what no single line does."
+        )
     table = parallax_tables.corrected(results)
     return Part(
         "corrected",

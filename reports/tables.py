@@ -9,7 +9,8 @@ from typing import Any, Literal
 from . import format as fmt
 from .results_view import Results
 
-Align = Literal["left", "right"]
+Align = Literal["left", "right", "prose"]
+LONG_WORD = 24  # letters from which an id may be broken over lines
 
 CSV_TABLES = (
     "images",
@@ -38,6 +39,11 @@ class Column:
     unit: str = ""
     align: Align = "right"
     group: str = ""
+
+    @property
+    def has_long_words(self) -> bool:
+        """Whether a cell holds a word (an id, a checksum) that no column can hold in one line."""
+        return any(len(word) > LONG_WORD for cell in self.cells for word in cell.split())
 
 
 @dataclass(frozen=True)
@@ -86,6 +92,11 @@ def text_column(title: str, cells: Iterable[str | None], group: str = "") -> Col
     return Column(
         title, tuple(fmt.MISSING if cell is None else cell for cell in cells), "", "left", group
     )
+
+
+def prose_column(title: str, cells: Iterable[str]) -> Column:
+    """A column of sentences, which takes the width that the others leave."""
+    return Column(title, tuple(cells), align="prose")
 
 
 def count_column(title: str, values: Iterable[float | None], group: str = "") -> Column:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from . import format as fmt
-from .results_view import Results, Row, angles, first, rows, setting, verdict
+from .results_view import Results, Row, angles, first, mean_over_models, rows, setting, verdict
 
 COARSE_PX = 50.0  # neither stereo viewing nor matching bridges this much parallax
 NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
@@ -116,8 +116,8 @@ def _cause(results: Results) -> str:
     numbers = verdict(results)
     cause, raw, relative = (numbers.get(key) for key in ("cause", "raw_px", "relative_px"))
     if cause:
-        held = _mean_of(results, "error_sources", fixed=cause)
-        every = _mean_of(results, "error_sources", fixed="angles")
+        held = mean_over_models(results, rows(results, "error_sources", fixed=cause))
+        every = mean_over_models(results, rows(results, "error_sources", fixed="angles"))
         share = numbers.get("cause_share")
         most = share is not None and share < ALONE
         text = f"{'Most of it comes' if most else 'The parallax comes'} from {cause}"
@@ -244,16 +244,6 @@ def _open(results: Results) -> str:
 
 def _motions(found: Iterable[Row]) -> str:
     return fmt.joined(dict.fromkeys(words for row in found for words in row["unobservable"]))
-
-
-def _mean_of(results: Results, key: str, **which: str) -> float | None:
-    """Mean over models: strip means weighted by the models of the strips."""
-    total, weight = 0.0, 0
-    for row in rows(results, key, **which):
-        n = len(rows(results, "models", strip=row["strip"]))
-        if n and not fmt.is_missing(row["mean_px"]):
-            total, weight = total + n * row["mean_px"], weight + n
-    return total / weight if weight else None
 
 
 def _parallax(numbers: Row, name: str) -> str:

@@ -1,0 +1,212 @@
+"""Tables of the regressions of angle errors on time, and of the decisions drawn from them."""
+
+from collections.abc import Iterable, Sequence
+
+from . import format as fmt
+from .results_view import Results, Row, decided_by_strip, first, rows, scope_label
+from .tables import (
+    Column,
+    Table,
+    count_column,
+    number_column,
+    p_column,
+    prose_column,
+    text_column,
+)
+
+SHOWN_DECISIONS = 20
+SHOWN_STRIP_LINES = 18  # from which lines strip by strip fill pages and tell no more
+
+_MODEL = "e(t) = a₀ + a₁ (t − t₀)"
+
+
+def ordinary_regression(results: Results) -> Table:
+    """The regressions by ordinary least squares: coefficients, R2, F0 and p."""
+    kept = _fitted(results, SHOWN_STRIP_LINES)
+    unit = fmt.rate_unit(row["slope_rad_per_s"] for row in kept)
+    columns: tuple[Column, ...] = (
+        *_who(kept),
+        count_column("n", [row["n"] for row in kept]),
+        count_column("clusters", [row["n_time_clusters"] for row in kept]),
+        number_column("a₀", "mrad", [fmt.MILLIRADIAN.scaled(row["intercept_rad"]) for row in kept]),
+        number_column("a₁", unit.name, [unit.scaled(row["slope_rad_per_s"]) for row in kept]),
+        count_column("t₀", [row["time_origin_s"] for row in kept]),
+        _share("R²", [row["r_squared"] for row in kept]),
+        Column("F₀", tuple(_statistic(row["f_statistic"]) for row in kept)),
+        p_column("p", [row["p_value"] for row in kept]),
+    )
+    columns = tuple(_with_unit(c, "s") if c.title == "t₀" else c for c in columns)
+    caption = f"Regression of the angle errors on time by ordinary least squares: {_MODEL}."
+    notes = (
+        "R²: share of the errors' variation that the line explains. F₀ = (n − 2) R² / (1 − R²), "
+        "with 1 and n − 2 degrees of freedom. Null hypothesis of p: the error does not change with "
+        "time (a₁ = 0), errors of different images being independent.",
+        "n: images; clusters: moments that are apart in time, as many as the line really rests on.",
+        "omega, phi, kappa: ground frame; pitch, roll, yaw: about the axes of the image.",
+        *_not_shown(results, kept),
+        *_reasons(results),
+    )
+    return Table("regression_ols", caption, columns, notes, _block_rows(kept))
+
+
+def generalised_regression(results: Results) -> Table:
+    """Slopes by generalised least squares beside those of OLS, each with its interval."""
+    kept = _fitted(results, 0)
+    rates = [row[key] for row in kept for key in ("slope_rad_per_s", "gls_slope_rad_per_s")]
+    unit = fmt.rate_unit(rates)
+    small = fmt.angle_unit(row["white_noise_sigma_rad"] for row in kept)
+    columns = [
+        *_who(kept),
+        *_slopes(kept, unit, "gls_slope_rad_per_s", "gls_slope_ci95", "GLS"),
+        p_column("p", [row.get("gls_p_value") for row in kept], "GLS"),
+        *_slopes(kept, unit, "slope_rad_per_s", "slope_ci95", "OLS"),
+    ]
+    for key, title in (
+        ("white_noise_sigma_rad", "white noise"),
+        ("strip_effect_sigma_rad", "strip effect"),
+    ):
+        values = [small.scaled(row.get(key)) for row in kept]
+        if fmt.present(values):
+            columns.append(number_column(title, small.name, values, 2))
+    caption = (
+        "Slopes of the angle errors over time with 95 % confidence intervals: ordinary (OLS) "
+        "beside generalised least squares (GLS), which allows for the errors' covariance."
+    )
+    notes = (
+        "GLS: covariance of the angle errors as estimated, plus white noise and, for the block, a "
+        "random constant per strip, with variances by restricted maximum likelihood; their "
+        "standard deviations are in the last columns. Where the two differ, believe GLS.",
+        "Null hypothesis of p: the slope is zero (t test).",
+        *_not_shown(results, kept),
+    )
+    return Table("regression_gls", caption, tuple(columns), notes, _block_rows(kept))
+
+
+def _slopes(
+    kept: Sequence[Row], unit: fmt.Unit, slope: str, interval: str, group: str
+) -> list[Column]:
+    bounds = [row.get(interval) or (None, None) for row in kept]
+    texts = [_interval(unit.scaled(low), unit.scaled(high)) for low, high in bounds]
+    return [
+        number_column("slope", unit.name, [unit.scaled(row.get(slope)) for row in kept], 3, group),
+        Column("95\u00a0%\u00a0interval", tuple(texts), unit.name, group=group),
+    ]
+
+
+def _interval(low: float | None, high: float | None) -> str:
+    if low is None or high is None:
+        return fmt.MISSING
+    decimals = max(0, 1 - fmt.exponent(high - low, 2)) if high > low else 2
+    return f"{fmt.fixed(low, decimals)} to {fmt.fixed(high, decimals)}"
+
+
+def decisions(results: Results) -> Table:
+    """Which angles are corrected, in which form, and why; by strip only the corrected ones."""
+    chosen = rows(results, "selection")
+    by_strip = decided_by_strip(results)
+    if by_strip:
+        chosen = [row for row in chosen if row["correct"]]
+    shown = chosen[:SHOWN_DECISIONS]
+    columns = (
+        text_column("Angle", [row["angle"] for row in shown]),
+        text_column("Frame", [row["frame"] for row in shown]),
+        text_column("Scope", [scope_label(row.get("scope") or "block") for row in shown]),
+        text_column("Corrected", ["yes" if row["correct"] else "no" for row in shown]),
+        text_column("Form", [row["form"] for row in shown]),
+        prose_column("Reason", [fmt.prose(row["reason"]) for row in shown]),
+    )
+    corrected = frozenset(k for k, row in enumerate(shown) if row["correct"] and not by_strip)
+    which = "Corrections of POS angles in single strips" if by_strip else (
+        "Decisions on the correction of the POS angles"
+    )  # fmt: skip
+    notes = ["Forms: none; constant (a mean error is taken off); linear (the regression line)."]
+    if by_strip:
+        hidden = f" {len(shown)} of {len(chosen)} are shown." if len(shown) < len(chosen) else ""
+        notes.append(f"The reasons of every strip and angle: tables/selection.csv.{hidden}")
+    return Table("decisions", f"{which}, each with its reason.", columns, tuple(notes), corrected)
+
+
+def decisions_by_strip(results: Results) -> Table:
+    """Decided form of every angle in every strip, with the R2 and p of its line."""
+    chosen = rows(results, "selection")
+    kept = list(dict.fromkeys(row["scope"] for row in chosen))
+    columns = [text_column("Strip", kept)]
+    for angle in dict.fromkeys(row["angle"] for row in chosen):
+        decided = [first(results, "selection", angle=angle, scope=scope) for scope in kept]
+        lines = [_line_of(results, row) for row in decided]
+        columns += [
+            _share("R²", [row.get("r_squared") for row in lines], angle),
+            p_column("p", [_tested_p(*pair) for pair in zip(decided, lines, strict=True)], angle),
+            text_column("form", [row.get("form") for row in decided], angle),
+        ]
+    caption = (
+        "Decisions on the correction of the POS angles strip by strip: the form taken off, and R² "
+        "and p of the line over time."
+    )
+    notes = (
+        f"{fmt.MISSING}: no line can be fitted to the strip (fewer than three images). p: as the "
+        "rules test it, before any adjustment for testing several angles.",
+    )
+    return Table("decisions_by_strip", caption, tuple(columns), notes)
+
+
+def _line_of(results: Results, decision: Row) -> Row:
+    return first(results, "regression", **{k: decision.get(k) for k in ("angle", "frame", "scope")})
+
+
+def _tested_p(decision: Row, line: Row) -> float | None:
+    p: float | None = line.get("gls_p_value" if decision.get("fit") == "gls" else "p_value")
+    return p
+
+
+def _who(kept: Sequence[Row]) -> tuple[Column, Column]:
+    """Angle (its name tells the frame) and scope."""
+    return (
+        text_column("Angle", [row["angle"] for row in kept]),
+        text_column("Block or strip", [row["scope"] for row in kept]),
+    )
+
+
+def _fitted(results: Results, most: int) -> list[Row]:
+    """Regressions that could be made: the block's, then by strip if decided so or not too many."""
+    made = [row for row in rows(results, "regression") if not row.get("reason")]
+    block = [row for row in made if row["scope"] == "block"]
+    by_strip = [row for row in made if row["scope"] != "block"]
+    return block + (by_strip if decided_by_strip(results) or len(by_strip) <= most else [])
+
+
+def _not_shown(results: Results, kept: Sequence[Row]) -> tuple[str, ...]:
+    made = [row for row in rows(results, "regression") if not row.get("reason")]
+    return ("Strip by strip: tables/regression.csv.",) if len(kept) < len(made) else ()
+
+
+def _reasons(results: Results) -> list[str]:
+    """One note per reason for which regressions could not be made, and the angles it holds for."""
+    angles: dict[tuple[str, str], list[str]] = {}
+    for row in rows(results, "regression"):
+        if row.get("reason"):
+            angles.setdefault((row["reason"], scope_label(row["scope"])), []).append(row["angle"])
+    scopes: dict[tuple[str, str], list[str]] = {}
+    for (why, scope), named in angles.items():
+        scopes.setdefault((why, fmt.joined(named)), []).append(scope)
+    return [
+        f"Not fitted: {named} of {fmt.joined(where)}. Reason: {fmt.prose(why)}."
+        for (why, named), where in scopes.items()
+    ]
+
+
+def _block_rows(kept: Sequence[Row]) -> frozenset[int]:
+    return frozenset(k for k, row in enumerate(kept) if row["scope"] == "block")
+
+
+def _statistic(value: float | None) -> str:
+    """Four significant digits, but not more than three decimals."""
+    return fmt.fixed(value, 3) if value is not None and abs(value) < 10.0 else fmt.number(value, 4)
+
+
+def _share(title: str, values: Iterable[float | None], group: str = "") -> Column:
+    return Column(title, tuple(fmt.fixed(value, 3) for value in values), group=group)
+
+
+def _with_unit(column: Column, unit: str) -> Column:
+    return Column(column.title, column.cells, unit, column.align, column.group)
