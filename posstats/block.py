@@ -17,6 +17,9 @@ _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
 _Ids = NDArray[np.object_]
 
+BLOCK_SCOPE = "block"
+"""Scope of what concerns all strips, where else a strip's id stands; no strip has this id."""
+
 
 @dataclass(frozen=True, eq=False)
 class Orientations:

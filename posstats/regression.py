@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.block import BLOCK_SCOPE
 from posstats.drift import (
     ConstantFit,
     DriftFit,
@@ -19,12 +20,13 @@ from posstats.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 if TYPE_CHECKING:
     from posstats.angle_errors import AngleErrors
 
-__all__ = ["AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress"]
+__all__ = [
+    "BLOCK_SCOPE", "AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress",
+]  # fmt: skip
 
 _Floats = NDArray[np.float64]
 FitKind = Literal["ols", "gls"]
 _Fit = TypeVar("_Fit")
-BLOCK_SCOPE = "block"
 
 
 @dataclass(frozen=True, eq=False)

@@ -129,6 +129,7 @@ def test_the_whole_file_is_understood() -> None:
         ('"radial"', '"fisheye"', "camera.distortion.model: found 'fisheye'"),
         ('{ model = "radial", k1 = 0.1, k2 = 0.0 }', "0.1", "camera.distortion: found 0.1"),
         ("k1 = 0.1", "k1 = inf", "camera.distortion.k1: found inf, expected a finite number"),
+        ("k1 = 0.1", f"k1 = {10**400}", "camera.distortion.k1: found 1000"),
         (
             "mounting_deg = 0",
             "mounting_deg = 90",

@@ -19,6 +19,7 @@ def block_warnings(block: Block) -> list[str]:
         *_point_warnings(block),
         *_strip_warnings(block),
         *_model_warnings(block),
+        *_base_warnings(block),
         *_adjusted_warnings(block),
     ]
 
@@ -103,6 +104,25 @@ def _model_warnings(block: Block) -> list[str]:
     return [
         f"{_count(few, 'stereo model')} with fewer than {MIN_MODEL_POINTS} common points,"
         f" left out of the statistics: {_listed(few)}."
+    ]
+
+
+def _base_warnings(block: Block) -> list[str]:
+    """Models whose base the positions do not determine, as of a camera that hovers."""
+    orientations = block.orientations
+    models = stereo_models(block)
+    left, right = models.pairs.left, models.pairs.right
+    sigma = np.hypot(orientations.sigma_position_m[left], orientations.sigma_position_m[right])
+    base_m = np.linalg.norm(models.base_m, axis=1)
+    short = [
+        f"{orientations.image[left[model]]} - {orientations.image[right[model]]}"
+        for model in np.flatnonzero(base_m < sigma.max(axis=1, initial=0.0))
+    ]
+    if not short:
+        return []
+    return [
+        f"{_count(short, 'stereo model')} with a base shorter than the accuracy of their"
+        f" positions: {_listed(short)}."
     ]
 
 

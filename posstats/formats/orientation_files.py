@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from posstats.block import Orientations, OrientationTable
+from posstats.block import BLOCK_SCOPE, Orientations, OrientationTable
 from posstats.formats.block_toml import BlockSettings
 from posstats.formats.convention import Convention
 from posstats.formats.tables import Table
@@ -18,6 +18,9 @@ _Ints = NDArray[np.intp]
 _Ids = NDArray[np.object_]
 
 POSITION_COLUMNS = ("x", "y", "z")
+LARGEST_M = 1e9
+"""Beyond every map grid, zone numbers and all; a double still resolves 0.1 micrometre."""
+_LARGEST_ANGLE = 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +53,9 @@ def read_pos_rows(table: Table, settings: BlockSettings, findings: list[str]) ->
         table=table,
         row=row,
         image=image[row],
-        strip=np.array(table.ids("strip", findings).to_pylist(), dtype=object)[row],
+        strip=_strips(table, findings)[row],
         time_s=time_s[row],
-        position_crs=_columns(table, POSITION_COLUMNS, findings)[row],
+        position_crs=read_positions(table, findings)[row],
         file_angles=read_angles(table, settings, findings)[row],
         camera=_camera_numbers(table, settings, findings)[row],
         file_sigma_position=sigmas[row, :3],
@@ -104,7 +107,7 @@ def read_adjusted(
         f"{table.place(row, 'image')}: found image {image[row]!r}, which orientations has not"
         for row in np.flatnonzero(target < 0)
     ]
-    position_crs = _columns(table, POSITION_COLUMNS, findings)
+    position_crs = read_positions(table, findings)
     file_angles = read_angles(table, settings, findings)
     if (target < 0).any():
         return None
@@ -138,7 +141,7 @@ def unique_images(table: Table, findings: list[str]) -> _Ids:
 
 def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> _Floats:
     """Angles (n, 3) in the file's unit."""
-    angles = _columns(table, settings.angle_columns, findings)
+    angles = _columns(table, settings.angle_columns, _LARGEST_ANGLE, findings)
     if settings.angle_unit == "rad":
         for row, column in np.argwhere(np.abs(angles) > 2.0 * np.pi):
             findings.append(
@@ -148,15 +151,31 @@ def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> _
     return angles
 
 
-def _columns(table: Table, names: Sequence[str], findings: list[str]) -> _Floats:
-    return np.column_stack([table.numbers(name, findings) for name in names])
+def read_positions(table: Table, findings: list[str]) -> _Floats:
+    """Positions x, y, z (n, 3) as they stand."""
+    return _columns(table, POSITION_COLUMNS, LARGEST_M, findings)
+
+
+def _columns(table: Table, names: Sequence[str], largest: float, findings: list[str]) -> _Floats:
+    return np.column_stack([table.numbers(name, findings, largest=largest) for name in names])
+
+
+def _strips(table: Table, findings: list[str]) -> _Ids:
+    """Strip ids (n,), a finding for each that results could not tell from the whole block."""
+    strip = np.array(table.ids("strip", findings).to_pylist(), dtype=object)
+    findings += [
+        f"{table.place(row, 'strip')}: found {BLOCK_SCOPE!r}, which in results means all strips;"
+        " expected another id"
+        for row in np.flatnonzero(strip == BLOCK_SCOPE)
+    ]
+    return strip
 
 
 def _sigmas(table: Table, name: str, findings: list[str]) -> _Floats:
     """Standard deviations (n,), NaN where they are not given."""
     if name not in table.columns:
         return np.full(len(table), np.nan)
-    sigmas = table.numbers(name, findings, optional=True)
+    sigmas = table.numbers(name, findings, optional=True, largest=LARGEST_M)
     findings += [
         f"{table.place(row, name)}: found {sigmas[row]:g}, expected a positive number"
         for row in np.flatnonzero(sigmas <= 0.0)

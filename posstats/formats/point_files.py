@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from posstats.block import GroundPoints, TiePoints
 from posstats.camera import Camera
 from posstats.errors import GeometryError
+from posstats.formats.orientation_files import LARGEST_M, read_positions
 from posstats.formats.tables import Table
 from posstats.frames import GroundFrame
 
@@ -87,7 +88,7 @@ def read_ground_points(
     if not table.require(("point", "x", "y", "z", "role"), findings):
         return None
     point = np.array(table.ids("point", findings).to_pylist(), dtype=object)
-    position = np.column_stack([table.numbers(name, findings) for name in ("x", "y", "z")])
+    position = read_positions(table, findings)
     role = np.array(table.text("role"), dtype=object)
     findings += [
         f"{table.place(row, 'role')}: found {role[row]!r}, expected control or check"
@@ -98,7 +99,7 @@ def read_ground_points(
     findings += [
         f"{table.place(row, 'point')}: found point {point[row]!r} again, expected once"
         for previous, row in pairwise(order)
-        if point[previous] == point[row]
+        if point[previous] == point[row] and point[row]
     ]
     if len(findings) > before:
         return None
@@ -133,7 +134,7 @@ def refuse_outside_crs(
 def _survey_sigma(table: Table, name: str, findings: list[str]) -> _Floats:
     if name not in table.columns:
         return np.full(len(table), np.nan)
-    sigma = table.numbers(name, findings, optional=True)
+    sigma = table.numbers(name, findings, optional=True, largest=LARGEST_M)
     findings += [
         f"{table.place(row, name)}: found {sigma[row]:g}, expected no negative number"
         for row in np.flatnonzero(sigma < 0.0)
@@ -198,6 +199,7 @@ def _refuse_repeated(
 ) -> None:
     """Findings for points measured twice in one image; arguments sorted by point and image."""
     again = (point[1:] == point[:-1]) & (image[1:] == image[:-1]) & (image[1:] >= 0)
+    again &= (point_id != "")[point[1:]]  # an id that is missing has its own finding
     findings += [
         f"{table.place(order[k + 1], 'point')}: found point {point_id[point[k]]!r} again in"
         f" image {images[image[k]]!r} ({table.place(order[k], 'point')}), expected once"

@@ -25,6 +25,7 @@ _Floats = NDArray[np.float64]
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SHOWN_TEXT = 60
 _HEADER_CHARACTERS = 1_000_000
+_OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +65,8 @@ class Table:
             return True
         head = self.file if self.content is None else f"{self.file}:{self._header_line}"
         there = ", ".join(self.columns)
-        hint = "; are the columns separated by semicolons?" if ";" in there else ""
         findings += [
-            f"{head}, {name}: found no such column in {there}, expected it{hint}"
-            for name in missing
+            f"{head}, {name}: found no such column in {there}, expected it" for name in missing
         ]
         return False
 
@@ -88,10 +87,18 @@ class Table:
         values = _text(self.columns[column], numbers=True)
         return ["" if value is None else str(value) for value in values.to_pylist()]
 
-    def numbers(self, column: str, findings: list[str], optional: bool = False) -> _Floats:
+    def numbers(
+        self,
+        column: str,
+        findings: list[str],
+        optional: bool = False,
+        largest: float = np.inf,
+        hint: str = "",
+    ) -> _Floats:
         """(n,) finite numbers of a column; NaN, with a finding, where there is none.
 
-        `optional` lets empty cells and NaN pass without a finding.
+        `optional` lets empty cells and NaN pass without a finding; numbers beyond `largest` in
+        size are refused, with a `hint` at what they may be.
         """
         values = _parsed(self.columns[column])
         bad = ~np.isfinite(values)
@@ -101,7 +108,16 @@ class Table:
                 values[row] = np.nan
                 continue
             shown = "nothing" if found in (None, "") else repr(found)[:_SHOWN_TEXT]
-            findings.append(f"{self.place(row, column)}: found {shown}, expected a finite number")
+            point = " with a decimal point" if isinstance(found, str) and "," in found else ""
+            findings.append(
+                f"{self.place(row, column)}: found {shown}, expected a finite number{point}"
+            )
+            values[row] = np.nan
+        for row in np.flatnonzero(np.abs(values) > largest):
+            findings.append(
+                f"{self.place(row, column)}: found {values[row]:g}, expected a number of at most"
+                f" {largest:g} in size{hint}"
+            )
             values[row] = np.nan
         return values
 
@@ -134,6 +150,9 @@ def read_table(folder: Path, stem: str, findings: list[str]) -> Table | None:
     if content is None:
         return None
     read = _read_csv if path.suffix == ".csv" else _read_parquet
+    if not content.strip():
+        findings.append(f"{path.name}: found an empty file, expected a table")
+        return None
     table = read(path.name, content, findings)
     if table is not None and len(table) == 0:
         findings.append(f"{path.name}: found no rows, expected at least one")
@@ -147,14 +166,10 @@ def read_bytes(path: Path, findings: list[str]) -> bytes | None:
         findings.append(f"{path.name}: found a folder, expected a file")
         return None
     try:
-        content = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         findings.append(f"{path.name}: cannot be read ({error.strerror})")
         return None
-    if not content.strip():
-        findings.append(f"{path.name}: found an empty file, expected a table")
-        return None
-    return content
 
 
 def sha256(content: bytes) -> str:
@@ -202,13 +217,21 @@ def _decoded(file: str, content: bytes, findings: list[str]) -> str | None:
 
 
 def _header(file: str, text: str, findings: list[str]) -> list[str] | None:
-    """Column names as they stand, or None with a finding if one stands twice."""
+    """Column names as they stand, or None with a finding if they are no names."""
     try:
         line, header = next(_records(text[:_HEADER_CHARACTERS]))
     except csv.Error as error:
         findings.append(f"{file}:1: found no header row ({error}), expected column names")
         return None
     names = [name.strip() for name in header]
+    if len(names) == 1:
+        for separator, word in _OTHER_SEPARATORS.items():
+            if separator in names[0]:
+                findings.append(
+                    f"{file}:{line}: found columns separated by {word}, expected commas (and"
+                    " decimal points)"
+                )
+                return None
     twice = sorted({name for name in names if names.count(name) > 1})
     findings += [f"{file}:{line}, {name}: found the column twice, expected once" for name in twice]
     return None if twice else header
@@ -228,6 +251,7 @@ def _ragged_rows(file: str, text: str, n_columns: int) -> list[str]:
     try:
         return [
             f"{file}:{line}: found {len(fields)} values, expected {n_columns}"
+            f"{'; decimal commas?' if len(fields) > n_columns else ''}"
             for line, fields in _records(text)
             if len(fields) != n_columns
         ]
@@ -261,9 +285,7 @@ def _text(values: Any, numbers: bool = False) -> Any:
     """Arrow text of text, integer or (if asked) any other values, else None."""
     if pa.types.is_dictionary(values.type):
         values = values.dictionary_decode()
-    kind = values.type
-    is_text = pa.types.is_string(kind) or pa.types.is_large_string(kind)
-    if is_text or pa.types.is_integer(kind) or numbers:
+    if _is_text(values.type) or pa.types.is_integer(values.type) or numbers:
         return values.cast(pa.string())
     return None
 
@@ -272,8 +294,10 @@ def _parsed(values: Any) -> _Floats:
     """Numbers of an Arrow array, NaN where there is none."""
     if pa.types.is_dictionary(values.type):
         values = values.dictionary_decode()
-    if pa.types.is_string(values.type) or pa.types.is_large_string(values.type):
-        text = pc.utf8_trim_whitespace(values)
+    if pa.types.is_boolean(values.type):
+        return np.full(len(values), np.nan)
+    if _is_text(values.type):
+        text = pc.utf8_trim_whitespace(values.cast(pa.string()))
         try:
             return np.array(_as_numpy(text.cast(pa.float64())), dtype=float)
         except pa.ArrowInvalid:
@@ -282,6 +306,12 @@ def _parsed(values: Any) -> _Floats:
         return np.array(_as_numpy(values.cast(pa.float64(), safe=False)), dtype=float)
     except (pa.ArrowInvalid, pa.ArrowNotImplementedError):
         return np.full(len(values), np.nan)
+
+
+def _is_text(kind: Any) -> bool:
+    return bool(
+        pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_string_view(kind)
+    )
 
 
 def _number(text: str | None) -> float:

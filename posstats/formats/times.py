@@ -11,6 +11,8 @@ _Floats = NDArray[np.float64]
 
 TIME_COLUMNS = ("time_s", "time_gps_s", "time_utc")
 WEEK_S = 604_800.0
+LARGEST_S = 1e11
+"""Seconds of no known origin: 3000 years; time stamps in milliseconds since 1970 lie beyond."""
 
 
 def read_times(table: Table, findings: list[str]) -> _Floats:
@@ -28,7 +30,8 @@ def read_times(table: Table, findings: list[str]) -> _Floats:
         return np.full(len(table), np.nan)
     if present == ["time_utc"]:
         return _utc_seconds(table, findings)
-    seconds = table.numbers(present[0], findings)
+    hint = "; milliseconds?" if present == ["time_s"] else ""
+    seconds = table.numbers(present[0], findings, largest=LARGEST_S, hint=hint)
     if present == ["time_gps_s"]:
         findings += [
             f"{table.place(row, 'time_gps_s')}: found {seconds[row]:.10g},"

@@ -1,12 +1,11 @@
 """One section of block.toml: typed reading of its keys, findings with line and key."""
 
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any, cast
-
-import numpy as np
 
 FILE = "block.toml"
 
@@ -92,11 +91,12 @@ class TomlSection:
 
 
 def _is_number(value: object) -> bool:
-    return (
-        isinstance(value, int | float)
-        and not isinstance(value, bool)
-        and bool(np.isfinite(float(value)))
-    )
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number too large for a float
+        return False
 
 
 def line_of_section(text: str, name: str) -> str:
