@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations
 from posstats.coplanarity_adjustment import AdjustedBlock, Priors, adjust
-from posstats.coplanarity_pairs import PointPairs, point_pairs
+from posstats.coplanarity_pairs import PointPairs, long_bases, point_pairs
 from posstats.errors import GeometryError
 from posstats.observability import (
     UNDETERMINED_SHARE,
@@ -30,7 +30,7 @@ from posstats.rotation import (
     vector_from_rotation,
     wrapped,
 )
-from posstats.stereo import StereoModels, cross_strip_pairs, form_models
+from posstats.stereo import StereoModels, cross_strip_pairs
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
@@ -151,9 +151,10 @@ def coplanarity_errors(
         If the adjustment does not settle.
     """
     pos = block.orientations
-    across = form_models(block, cross_strip_pairs(block))
-    pairs = point_pairs(block.tie_points, models, across)
-    if len(pairs.left_vectors) == 0:
+    image_pairs = models.pairs.joined(cross_strip_pairs(block))
+    long = long_bases(pos, image_pairs)
+    pairs = point_pairs(block, image_pairs.subset(long))
+    if len(pairs.left) == 0:
         raise GeometryError("no pair of images has common tie points: angle errors need them")
     priors = Priors(
         angles_rad=pos.angles_rad,

@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.coplanarity import base_frames, y_parallax_derivatives
-from posstats.coplanarity_normals import accumulate_normals, precision
+from posstats.coplanarity_normals import (
+    Observed,
+    PointRays,
+    accumulate_normals,
+    precision,
+    refer_to_measurements,
+)
 from posstats.coplanarity_pairs import PointPairs
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.least_squares import factorised, propagated
@@ -99,30 +105,13 @@ class AdjustedBlock:
     n_iterations: int
 
 
-@dataclass(frozen=True, eq=False)
-class _Linearised:
-    """q and its derivatives, (N, ...), px, px/rad, px/m, px/px."""
-
-    q: _Floats
-    by_left_angles: _Floats
-    by_right_angles: _Floats
-    by_base: _Floats
-    by_image: _Floats
-
-    @property
-    def variance(self) -> _Floats:
-        """(N,) variance of q per unit variance of an image coordinate: diag(D D')."""
-        variance: _Floats = np.einsum("ij,ij->i", self.by_image, self.by_image)
-        return variance
-
-
 def linearised(
     pairs: PointPairs,
     unknowns: _Floats,
     image_noise: _Floats,
     frames: _Floats,
     system: AngleSystem,
-) -> _Linearised:
+) -> Observed:
     """Y-parallaxes and derivatives at `unknowns` (n, 6) and at image points freed of noise.
 
     q is that of the measured image points to first order in `image_noise` (m, 2), the derivatives
@@ -131,13 +120,14 @@ def linearised(
     The parallax is measured in `frames` (p, 3, 3), base_from_ground, which stay those of the
     POS bases: so the derivatives are exact, also where q is not yet zero.
     """
-    left_noise, right_noise = image_noise[pairs.left_ray], image_noise[pairs.right_ray]
+    vectors = pairs.ray_vectors.copy()
+    vectors[:, :2] -= image_noise
     rotation = rotation_from_angles(unknowns[:, :3], system)
     derivative = rotation_derivatives(unknowns[:, :3], system)
     base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
     q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
-        pairs.left_vectors - np.pad(left_noise, ((0, 0), (0, 1))),
-        pairs.right_vectors - np.pad(right_noise, ((0, 0), (0, 1))),
+        vectors[pairs.left_ray],
+        vectors[pairs.right_ray],
         pairs.offsets,
         frames @ rotation[pairs.left],
         frames @ rotation[pairs.right],
@@ -145,9 +135,10 @@ def linearised(
         frames[:, None] @ derivative[pairs.right],
         np.einsum("pij,pj->pi", frames, base),
     )
-    q += np.einsum("ij,ij->i", by_image, np.concatenate([left_noise, right_noise], axis=1))
-    frame = np.repeat(frames, np.diff(pairs.offsets), axis=0)
-    return _Linearised(q, by_left, by_right, np.einsum("ni,nij->nj", by_base, frame), by_image)
+    variance = refer_to_measurements(
+        q, by_base, by_image, image_noise, pairs.left_ray, pairs.right_ray, pairs.offsets, frames
+    )
+    return Observed(q, by_left, by_right, by_base, by_image, variance)
 
 
 def adjust(
@@ -177,9 +168,7 @@ def adjust(
             f" {n_images}: divide it, or use an adjusted orientation as the source of the errors"
         )
     frames = base_frames(priors.position_m[pairs.right] - priors.position_m[pairs.left])
-    weighting = _Weighting(
-        "reweight" if robust else "plain", robust, np.ones(len(pairs.left_vectors))
-    )
+    weighting = _Weighting("reweight" if robust else "plain", robust, np.ones(len(pairs.left_ray)))
     unknowns, image_noise = priors.values, np.zeros((len(pairs.ray_image), 2))
     for count in range(1, MAX_ITERATIONS + 1):
         observed = _finite(
@@ -209,7 +198,7 @@ class _Weighting:
     robust_weight: _Floats
     scale_px: float = float("nan")
 
-    def updated(self, observed: _Linearised, smallest_px: float) -> "_Weighting":
+    def updated(self, observed: Observed, smallest_px: float) -> "_Weighting":
         """Weights for the residuals at hand; unchanged in the phase ``fixed``."""
         if self.phase == "fixed":
             return self
@@ -231,7 +220,7 @@ class _Weighting:
         return replace(self, phase=_NEXT[self.phase])
 
 
-def _finite(observed: _Linearised) -> _Linearised:
+def _finite(observed: Observed) -> Observed:
     if not np.all(np.isfinite(observed.q)):
         raise ConvergenceError(
             "the coplanarity adjustment left the geometry of vertical photographs (infinite"
@@ -254,7 +243,7 @@ class _Normals:
 
 def _normal_equations(
     pairs: PointPairs,
-    observed: _Linearised,
+    observed: Observed,
     weighting: _Weighting,
     priors: Priors,
     *,
@@ -268,19 +257,17 @@ def _normal_equations(
         normals, right_side = np.zeros((size, size)), np.zeros(size)
         noise_normals = np.zeros((size, size) if with_noise else (0, 0))
         square_sum, noise_trace = accumulate_normals(
-            observed.q,
-            observed.by_left_angles,
-            observed.by_right_angles,
-            observed.by_base,
-            observed.by_image,
+            observed,
             pair_precision,
-            pairs.left_ray,
-            pairs.right_ray,
-            pairs.by_point,
-            pairs.point_offsets[points.start : points.stop + 1],
-            pairs.first_ray[points],
-            pairs.n_rays[points],
-            pairs.ray_image,
+            PointRays(
+                pairs.left_ray,
+                pairs.right_ray,
+                pairs.by_point,
+                pairs.point_offsets[points.start : points.stop + 1],
+                pairs.first_ray[points],
+                pairs.n_rays[points],
+                pairs.ray_image,
+            ),
             normals,
             right_side,
             noise_normals,

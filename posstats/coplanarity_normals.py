@@ -16,7 +16,11 @@ E = D'L^-1 D, H = D'L^-1 J and g = D'L^-1 q (2n rows each) and the Cholesky fact
     G = D'WJ = (I + E)^-1 H,                 J'WJ = J'L^-1 J - (C^-1 H)'(C^-1 H),
     J'Wq = J'L^-1 q - (C^-1 H)'(C^-1 g),     q'Wq = q'L^-1 q - |C^-1 g|^2,
     D'Wq = (I + E)^-1 g,                     tr(W D D') = tr((I + E)^-1 E) = 2n - |C^-1|^2.
+
+Points seen by the same images share their matrices, which enter those of the block only once.
 """
+
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +29,46 @@ from posstats.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
+_Six = Any  # a tuple of six numbers, which stays in registers
 
 RIDGE = 0.05
+
+
+class Observed(NamedTuple):
+    """N y-parallaxes and their derivatives, px, px/rad, px/m, px/px.
+
+    Attributes
+    ----------
+    q
+        (N,).
+    by_left_angles, by_right_angles
+        (N, 3).
+    by_base
+        (N, 3), ground frame.
+    by_image
+        (N, 4) by x, y of the left and of the right image point: the rows of D.
+    variance
+        (N,) per unit variance of an image coordinate: d = diag(D D').
+    """
+
+    q: _Floats
+    by_left_angles: _Floats
+    by_right_angles: _Floats
+    by_base: _Floats
+    by_image: _Floats
+    variance: _Floats
+
+
+class PointRays(NamedTuple):
+    """The pairs and the rays of g points, as in `coplanarity_pairs.PointPairs`."""
+
+    left_ray: _Ints
+    right_ray: _Ints
+    by_point: _Ints
+    point_offsets: _Ints
+    first_ray: _Ints
+    n_rays: _Ints
+    ray_image: _Ints
 
 
 def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
@@ -35,9 +77,37 @@ def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
     return result
 
 
+@kernel
+def refer_to_measurements(
+    q: _Floats,
+    by_base: _Floats,
+    by_image: _Floats,
+    image_noise: _Floats,
+    left_ray: _Ints,
+    right_ray: _Ints,
+    offsets: _Ints,
+    frames: _Floats,
+) -> _Floats:
+    """Carry q (N,) from image points freed of noise to the measured ones, in place.
+
+    `by_base` (N, 3) is turned from the base frames, `frames` (p, 3, 3) base_from_ground, into the
+    ground frame, in place. `image_noise` (m, 2) belongs to the rays. Returns diag(D D') (N,).
+    """
+    variance = np.empty(len(q))
+    for pair in range(len(offsets) - 1):
+        frame = frames[pair]
+        for k in range(offsets[pair], offsets[pair + 1]):
+            left, right, d = image_noise[left_ray[k]], image_noise[right_ray[k]], by_image[k]
+            q[k] += d[0] * left[0] + d[1] * left[1] + d[2] * right[0] + d[3] * right[1]
+            variance[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
+            x, y, z = by_base[k]
+            for axis in range(3):
+                by_base[k, axis] = x * frame[0, axis] + y * frame[1, axis] + z * frame[2, axis]
+    return variance
+
+
 @inner_kernel
 def _add_pair(
-    k: int,
     left: int,
     right: int,
     weight: float,
@@ -49,10 +119,10 @@ def _add_pair(
     noise: _Floats,
     shared: _Floats,
 ) -> None:
-    """Add one pair to J'L^-1 J, J'L^-1 q (local), E and [H g] (shared).
+    """Add one pair to J'L^-1 J, J'L^-1 q, I + E and [H g].
 
-    `left` < `right` are the places of its rays in the point; `row` (12,) is its row of J. Of
-    `normals` only the upper triangle becomes complete.
+    `left` < `right` are the places of its rays in the point; `row` (12,) is its row of J,
+    `by_image` (4,) that of D. Of `normals` only the upper triangle becomes complete.
     """
     last = shared.shape[1] - 1
     for i in range(12):
@@ -65,15 +135,46 @@ def _add_pair(
         for j in range(6):
             normals[at, 6 * right + j] += scaled * row[6 + j]
         for r in range(2):
-            shared[2 * left + r, at] += scaled * by_image[k, r]
-            shared[2 * right + r, at] += scaled * by_image[k, 2 + r]
+            shared[2 * left + r, at] += scaled * by_image[r]
+            shared[2 * right + r, at] += scaled * by_image[2 + r]
     for i in range(4):
         at = 2 * left + i if i < 2 else 2 * right + i - 2
-        scaled = weight * by_image[k, i]
+        scaled = weight * by_image[i]
         shared[at, last] += scaled * q
         for j in range(2):
-            noise[at, 2 * left + j] += scaled * by_image[k, j]
-            noise[at, 2 * right + j] += scaled * by_image[k, 2 + j]
+            noise[at, 2 * left + j] += scaled * by_image[j]
+            noise[at, 2 * right + j] += scaled * by_image[2 + j]
+
+
+@inner_kernel
+def _add_point(
+    point: int,
+    points: PointRays,
+    observed: Observed,
+    pair_precision: _Floats,
+    row: _Floats,
+    normals: _Floats,
+    right_side: _Floats,
+    noise: _Floats,
+    shared: _Floats,
+) -> float:
+    """Add a point to J'L^-1 J and J'L^-1 q, write its I + E and [H g]; q'L^-1 q is returned."""
+    noise[:], shared[:] = 0.0, 0.0
+    for i in range(noise.shape[0]):
+        noise[i, i] = 1.0
+    first = points.first_ray[point]
+    square_sum = 0.0
+    for place in range(points.point_offsets[point], points.point_offsets[point + 1]):
+        k = points.by_point[place]
+        for i in range(3):
+            row[i], row[6 + i] = observed.by_left_angles[k, i], observed.by_right_angles[k, i]
+            row[3 + i], row[9 + i] = -observed.by_base[k, i], observed.by_base[k, i]
+        _add_pair(
+            points.left_ray[k] - first, points.right_ray[k] - first, pair_precision[k],
+            observed.q[k], row, observed.by_image[k], normals, right_side, noise, shared,
+        )  # fmt: skip
+        square_sum += pair_precision[k] * observed.q[k] * observed.q[k]
+    return square_sum
 
 
 @inner_kernel
@@ -146,13 +247,61 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 
 
 @inner_kernel
+def _six(row: _Floats, first: int) -> _Six:
+    return (
+        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
+    )  # fmt: skip
+
+
+@inner_kernel
+def _plus(c: _Six, f: float, w: _Six) -> _Six:
+    return (
+        c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
+        c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
+    )  # fmt: skip
+
+
+@inner_kernel
 def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
-    """Upper triangle of matrix += sign rows' rows; rows (n, width) leading part."""
-    for i in range(width):
-        for r in range(n):
-            f = sign * rows[r, i]
-            for j in range(i, width):
-                matrix[i, j] += f * rows[r, j]
+    """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
+
+    rows: (n, width) leading part, width a multiple of 6. Two rows of a block at a time are summed
+    in registers: twice as fast as plain loops.
+    """
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for first in range(0, width, 6):
+        for second in range(first, width, 6):
+            for i in range(first, first + 6, 2):
+                upper, lower = zero, zero
+                for r in range(n):
+                    row = _six(rows[r], second)
+                    upper = _plus(upper, rows[r, i], row)
+                    lower = _plus(lower, rows[r, i + 1], row)
+                for j in range(6):
+                    matrix[i, second + j] += sign * upper[j]
+                    matrix[i + 1, second + j] += sign * lower[j]
+
+
+@inner_kernel
+def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
+    """Take (C^-1 H)'(C^-1 g) from the right side; |C^-1 g|^2 is returned."""
+    width = right_side.shape[0]
+    square_sum = 0.0
+    for r in range(shared.shape[0]):
+        projected = shared[r, width]
+        square_sum += projected * projected
+        for i in range(width):
+            right_side[i] -= shared[r, i] * projected
+    return square_sum
+
+
+@inner_kernel
+def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
+    """Whether there is such a point, and exactly these images see it."""
+    if point == points.first_ray.shape[0] or points.n_rays[point] != images.shape[0]:
+        return False
+    first = points.first_ray[point]
+    return np.array_equal(points.ray_image[first : first + images.shape[0]], images)
 
 
 @inner_kernel
@@ -167,19 +316,9 @@ def _scatter(local: _Floats, images: _Ints, matrix: _Floats) -> None:
 
 @kernel
 def accumulate_normals(
-    q: _Floats,
-    by_left_angles: _Floats,
-    by_right_angles: _Floats,
-    by_base: _Floats,
-    by_image: _Floats,
+    observed: Observed,
     pair_precision: _Floats,
-    left_ray: _Ints,
-    right_ray: _Ints,
-    by_point: _Ints,
-    point_offsets: _Ints,
-    first_ray: _Ints,
-    n_rays: _Ints,
-    ray_image: _Ints,
+    points: PointRays,
     normals: _Floats,
     right_side: _Floats,
     noise_normals: _Floats,
@@ -189,13 +328,12 @@ def accumulate_normals(
 
     Parameters
     ----------
-    q, by_left_angles, by_right_angles, by_base, by_image
-        (N,), (N, 3), (N, 3), (N, 3), (N, 4): parallax and derivatives, the base in the ground
-        frame.
+    observed
+        Of all pairs.
     pair_precision
         (N,) from `precision`.
-    left_ray, right_ray, by_point, point_offsets, first_ray, n_rays, ray_image
-        As in `coplanarity_pairs.PointPairs`.
+    points
+        The points to add; those of the same images are best neighbours.
     normals, right_side
         (6 n, 6 n), (6 n,): J'WJ (upper triangle) and J'Wq are added; per image three angles,
         then three coordinates.
@@ -211,49 +349,37 @@ def accumulate_normals(
         q'Wq and tr(W D D') (0 where `noise_normals` is not wanted).
     """
     with_noise = noise_normals.shape[0] > 0
-    most = n_rays.max()
-    local_store, noise_store = np.empty((6 * most) ** 2), np.empty((2 * most) ** 2)
-    shared_store = np.empty(2 * most * (6 * most + 1))
+    most = points.n_rays.max()
+    local_store, local_noise_store = np.empty((6 * most) ** 2), np.empty((6 * most) ** 2)
+    noise_store, shared_store = np.empty((2 * most) ** 2), np.empty(2 * most * (6 * most + 1))
     right_store, row, work = np.empty(6 * most), np.empty(12), np.empty(2 * most)
     square_sum = noise_trace = 0.0
-    for point in range(first_ray.shape[0]):
-        first, n = first_ray[point], n_rays[point]
-        local, noise = _square(local_store, 6 * n), _square(noise_store, 2 * n)
+    point = 0
+    while point < points.first_ray.shape[0]:
+        first, n = points.first_ray[point], points.n_rays[point]
+        images = points.ray_image[first : first + n]
+        local, local_noise = _square(local_store, 6 * n), _square(local_noise_store, 6 * n)
+        right, noise = right_store[: 6 * n], _square(noise_store, 2 * n)
         shared = shared_store[: 2 * n * (6 * n + 1)].reshape(2 * n, 6 * n + 1)
-        right = right_store[: 6 * n]
-        local[:] = 0.0
-        noise[:] = 0.0
-        shared[:] = 0.0
-        right[:] = 0.0
-        for i in range(2 * n):
-            noise[i, i] = 1.0
-        for place in range(point_offsets[point], point_offsets[point + 1]):
-            k = by_point[place]
-            for i in range(3):
-                row[i], row[6 + i] = by_left_angles[k, i], by_right_angles[k, i]
-                row[3 + i], row[9 + i] = -by_base[k, i], by_base[k, i]
-            _add_pair(
-                k, left_ray[k] - first, right_ray[k] - first, pair_precision[k], q[k], row,
-                by_image, local, right, noise, shared,
-            )  # fmt: skip
-            square_sum += pair_precision[k] * q[k] * q[k]
-        images = ray_image[first : first + n]
-        _factorise(noise, 2 * n)
-        _solve_lower(noise, 2 * n, shared, 6 * n + 1)
-        _add_products(shared, 2 * n, 6 * n, local, -1.0)
+        local[:], local_noise[:], right[:] = 0.0, 0.0, 0.0
+        while _seen_by(images, point, points):
+            square_sum += _add_point(
+                point, points, observed, pair_precision, row, local, right, noise, shared
+            )
+            _factorise(noise, 2 * n)
+            _solve_lower(noise, 2 * n, shared, 6 * n + 1)
+            _add_products(shared, 2 * n, 6 * n, local, -1.0)
+            square_sum -= _subtract_projected(shared, right)
+            first = points.first_ray[point]
+            _back_substitute(noise, 2 * n, shared[:, 6 * n], image_noise[first : first + n])
+            if with_noise:
+                noise_trace += 2 * n - _inverse_square_sum(noise, 2 * n, work)
+                _solve_upper(noise, 2 * n, shared, 6 * n)
+                _add_products(shared, 2 * n, 6 * n, local_noise, 1.0)
+            point += 1
         _scatter(local, images, normals)
-        for r in range(2 * n):
-            projected = shared[r, 6 * n]
-            square_sum -= projected * projected
-            for i in range(6 * n):
-                right[i] -= shared[r, i] * projected
+        if with_noise:
+            _scatter(local_noise, images, noise_normals)
         for i in range(6 * n):
             right_side[6 * images[i // 6] + i % 6] += right[i]
-        _back_substitute(noise, 2 * n, shared[:, 6 * n], image_noise[first : first + n])
-        if with_noise:
-            noise_trace += 2 * n - _inverse_square_sum(noise, 2 * n, work)
-            _solve_upper(noise, 2 * n, shared, 6 * n)
-            local[:] = 0.0
-            _add_products(shared, 2 * n, 6 * n, local, 1.0)
-            _scatter(local, images, noise_normals)
     return square_sum, noise_trace

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import TiePoints
-from posstats.stereo import StereoModels
+from posstats.block import Block, Orientations
+from posstats.stereo import ImagePairs, image_vectors
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -24,10 +24,10 @@ class PointPairs:
         (p,) images.
     offsets
         (p + 1,) first point pair of each image pair, and N.
-    left_vectors, right_vectors
-        (N, 3) image vectors (x, y, -c), px.
     left_ray, right_ray
         (N,) rays, numbered point after point.
+    ray_vectors
+        (m, 3) image vectors (x, y, -c) of the rays, px.
     ray_image
         (m,) image of every ray, ascending within a point.
     by_point
@@ -35,16 +35,15 @@ class PointPairs:
     point_offsets
         (g + 1,) first place of each point in `by_point`, and N.
     first_ray, n_rays
-        (g,) the rays of each point.
+        (g,) the rays of each point. Points that the same images see are neighbours, mostly.
     """
 
     left: _Ints
     right: _Ints
     offsets: _Ints
-    left_vectors: _Floats
-    right_vectors: _Floats
     left_ray: _Ints
     right_ray: _Ints
+    ray_vectors: _Floats
     ray_image: _Ints
     by_point: _Ints
     point_offsets: _Ints
@@ -52,41 +51,50 @@ class PointPairs:
     n_rays: _Ints
 
 
-def point_pairs(tie_points: TiePoints, models: StereoModels, across: StereoModels) -> PointPairs:
-    """Point pairs of the stereo models and of the pairs of images across strips.
-
-    Image pairs whose base is shorter than three of its standard deviations are left out: the
-    direction of such a base, hence the parallax, is not known even roughly.
-    """
-    parts = [(part, _long_enough(part)) for part in (models, across)]
-    images = [(part.pairs.left[keep], part.pairs.right[keep]) for part, keep in parts]
-    counts = np.concatenate([part.pairs.n_points[keep] for part, keep in parts])
-    chosen = [(part, np.repeat(keep, part.pairs.n_points)) for part, keep in parts]
-    left_ray = np.concatenate([p.pairs.left_ray[rows] for p, rows in chosen])
-    right_ray = np.concatenate([p.pairs.right_ray[rows] for p, rows in chosen])
-    point = tie_points.point[left_ray]
-    by_point = np.argsort(point, kind="stable")
-    points, point_counts = np.unique(point, return_counts=True)
+def point_pairs(block: Block, pairs: ImagePairs) -> PointPairs:
+    """The common points of pairs of images, gathered point by point."""
+    ties = block.tie_points
+    n_points = len(ties.point_id)
+    point = ties.point[pairs.left_ray]
+    counts = np.bincount(point, minlength=n_points)
+    n_rays = np.bincount(ties.point, minlength=n_points)
+    first_ray = np.cumsum(n_rays) - n_rays
+    order = _alike_together(np.flatnonzero(counts), first_ray, n_rays, ties.image)
+    rank = np.empty(n_points, dtype=np.intp)
+    rank[order] = np.arange(len(order))
     return PointPairs(
-        left=np.concatenate([left for left, _ in images]),
-        right=np.concatenate([right for _, right in images]),
-        offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.intp),
-        left_vectors=np.concatenate([p.left_vectors[rows] for p, rows in chosen]),
-        right_vectors=np.concatenate([p.right_vectors[rows] for p, rows in chosen]),
-        left_ray=left_ray,
-        right_ray=right_ray,
-        ray_image=tie_points.image,
-        by_point=by_point,
-        point_offsets=np.concatenate([[0], np.cumsum(point_counts)]).astype(np.intp),
-        first_ray=np.searchsorted(tie_points.point, points, side="left"),
-        n_rays=np.bincount(tie_points.point, minlength=len(tie_points.point_id))[points],
+        left=pairs.left,
+        right=pairs.right,
+        offsets=pairs.offsets,
+        left_ray=pairs.left_ray,
+        right_ray=pairs.right_ray,
+        ray_vectors=image_vectors(ties, block.orientations, block.cameras),
+        ray_image=ties.image,
+        by_point=np.argsort(rank[point], kind="stable"),
+        point_offsets=np.concatenate([[0], np.cumsum(counts[order])]).astype(np.intp),
+        first_ray=first_ray[order],
+        n_rays=n_rays[order],
     )
 
 
-def _long_enough(models: StereoModels) -> NDArray[np.bool_]:
-    """(p,) whether the horizontal base exceeds its uncertainty."""
-    sigma = models.orientations.sigma_position_m[:, :2].max(axis=1)
-    base = np.hypot(models.base_m[:, 0], models.base_m[:, 1])
-    spread = np.hypot(sigma[models.pairs.left], sigma[models.pairs.right])
-    long_enough: NDArray[np.bool_] = base > SHORTEST_BASE * spread
-    return long_enough
+def _alike_together(points: _Ints, first_ray: _Ints, n_rays: _Ints, ray_image: _Ints) -> _Ints:
+    """Order the points (by number, first, last and sum of images): the same images in a row."""
+    before = np.concatenate([[0], np.cumsum(ray_image)])
+    first = first_ray[points]
+    end = first + n_rays[points]
+    keys = (before[end] - before[first], ray_image[end - 1], ray_image[first], end - first)
+    ordered: _Ints = points[np.lexsort(keys)]
+    return ordered
+
+
+def long_bases(orientations: Orientations, pairs: ImagePairs) -> NDArray[np.bool_]:
+    """(p,) whether the horizontal base is longer than three of its standard deviations.
+
+    The direction of a shorter base, hence the parallax, is not known even roughly.
+    """
+    position = orientations.position_m[:, :2]
+    sigma = orientations.sigma_position_m[:, :2].max(axis=1)
+    base = np.linalg.norm(position[pairs.right] - position[pairs.left], axis=1)
+    spread = np.hypot(sigma[pairs.left], sigma[pairs.right])
+    long: NDArray[np.bool_] = base > SHORTEST_BASE * spread
+    return long

@@ -22,20 +22,20 @@ _Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class NormalsFactor:
-    """Cholesky factor of normal equations N = U'U; `upper` (u, u)."""
+    """Cholesky factor of normal equations N = L L'; `lower` (u, u) in Fortran order."""
 
-    upper: _Floats
+    lower: _Floats
 
     def solve(self, right_side: _Floats) -> _Floats:
         """N^-1 right_side, (u,) or (u, k)."""
-        solution, _ = lapack.dpotrs(self.upper, right_side)
+        solution, _ = lapack.dpotrs(self.lower, right_side, lower=1)
         return np.asarray(solution, dtype=float)
 
     def inverse(self) -> _Floats:
         """N^-1 (u, u), both triangles."""
-        inverse, _ = lapack.dpotri(self.upper)
-        triangle: _Floats = np.triu(inverse)
-        triangle += np.triu(inverse, 1).T
+        inverse, _ = lapack.dpotri(self.lower, lower=1)
+        triangle: _Floats = np.asarray(inverse, dtype=float)
+        triangle += np.tril(triangle, -1).T
         return triangle
 
 
@@ -47,10 +47,10 @@ def factorised(normals: _Floats) -> NormalsFactor:
     GeometryError
         If they are singular or not finite: some unknown is not determined.
     """
-    upper, info = lapack.dpotrf(normals, lower=0)
-    if info != 0 or not np.all(np.isfinite(np.diagonal(upper))):
+    lower, info = lapack.dpotrf(normals.T, lower=1)  # the transpose needs no reordering
+    if info != 0 or not np.all(np.isfinite(np.diagonal(lower))):
         raise GeometryError("the normal equations are singular: an unknown is not determined")
-    return NormalsFactor(upper)
+    return NormalsFactor(lower)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,16 +63,13 @@ class Propagation:
         (u, u) N^-1.
     prior_weights
         (u,) diagonal of P.
-    noise_cofactors
-        (u, u) N^-1 M N^-1: covariance per unit of sigma^2 caused by the measurements.
-    noise_in_normals
-        tr(N^-1 M).
+    noise_gain
+        (u, u) N^-1 M: times N^-1 the covariance per unit of sigma^2 that the measurements cause.
     """
 
     inverse: _Floats
     prior_weights: _Floats
-    noise_cofactors: _Floats
-    noise_in_normals: float
+    noise_gain: _Floats
 
     def variance_factor(self, weighted_square_sum: float, noise_trace: float) -> float:
         """sigma^2 from the residuals v, by the exact expectation of v'Wv.
@@ -88,19 +85,19 @@ class Propagation:
             tr(W D D').
         """
         p = self.prior_weights
-        prior_in_noise = float(p @ np.diagonal(self.noise_cofactors))
-        redundancy = noise_trace - self.noise_in_normals - prior_in_noise
+        prior_in_noise = float(p @ np.einsum("ij,ji->i", self.noise_gain, self.inverse))
+        redundancy = noise_trace - float(np.trace(self.noise_gain)) - prior_in_noise
         prior_part = float(p @ np.diagonal(self.inverse) - p @ (self.inverse**2 @ p))
         if redundancy <= 1e-9 * noise_trace:
             return float("nan")
         return max(weighted_square_sum - prior_part, 0.0) / redundancy
 
     def covariance(self, sigma2: float, unknowns: NDArray[np.intp]) -> _Floats:
-        """Covariance (k, k) of some unknowns (indices, (k,)), the others marginal."""
-        rows = self.inverse[unknowns]
-        noise: _Floats = self.noise_cofactors[np.ix_(unknowns, unknowns)]
-        covariance: _Floats = sigma2 * noise + (rows * self.prior_weights) @ rows.T
-        return covariance
+        """Covariance (k, k) of some unknowns (indices, (k,)), the others marginal; symmetric."""
+        rows = sigma2 * self.noise_gain[unknowns] + self.inverse[unknowns] * self.prior_weights
+        covariance: _Floats = rows @ self.inverse[:, unknowns]
+        covariance += covariance.T.copy()
+        return 0.5 * covariance
 
 
 def propagated(
@@ -118,9 +115,4 @@ def propagated(
         (u,).
     """
     inverse = factor.inverse()
-    return Propagation(
-        inverse=inverse,
-        prior_weights=prior_weights,
-        noise_cofactors=inverse @ noise_normals @ inverse,
-        noise_in_normals=float(np.vdot(inverse, noise_normals)),
-    )
+    return Propagation(inverse, prior_weights, noise_gain=inverse @ noise_normals)

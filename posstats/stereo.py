@@ -50,6 +50,30 @@ class ImagePairs:
         """(N,) number of the image pair of every point pair."""
         return np.repeat(np.arange(len(self)), self.n_points)
 
+    def subset(self, which: NDArray[np.bool_] | _Ints) -> "ImagePairs":
+        """The pairs `which` (mask or order), with their points."""
+        chosen = np.arange(len(self))[which]
+        counts = self.n_points[chosen]
+        offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.intp)
+        points = np.repeat(self.offsets[chosen] - offsets[:-1], counts) + np.arange(offsets[-1])
+        return ImagePairs(
+            left=self.left[chosen],
+            right=self.right[chosen],
+            offsets=offsets,
+            left_ray=self.left_ray[points],
+            right_ray=self.right_ray[points],
+        )
+
+    def joined(self, other: "ImagePairs") -> "ImagePairs":
+        """These pairs, then the others."""
+        return ImagePairs(
+            left=np.concatenate([self.left, other.left]),
+            right=np.concatenate([self.right, other.right]),
+            offsets=np.concatenate([self.offsets, self.offsets[-1] + other.offsets[1:]]),
+            left_ray=np.concatenate([self.left_ray, other.left_ray]),
+            right_ray=np.concatenate([self.right_ray, other.right_ray]),
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class StereoModels:
@@ -150,7 +174,7 @@ def cross_strip_pairs(block: Block, min_points: int = MIN_MODEL_POINTS) -> Image
     across = strip[i] != strip[j]
     code = i[across] * len(strip) + j[across]
     pairs = _grouped(code, point_ray_i[across], point_ray_j[across], len(strip))
-    return _selected(pairs, pairs.n_points >= min_points)
+    return pairs.subset(pairs.n_points >= min_points)
 
 
 def common_points(tie_points: TiePoints, rays: _Ints, left: _Ints, right: _Ints) -> ImagePairs:
@@ -171,7 +195,7 @@ def common_points(tie_points: TiePoints, rays: _Ints, left: _Ints, right: _Ints)
     found = _grouped(code[use], ray_i[use], ray_j[use], n_images)
     order = {int(c): k for k, c in enumerate(wanted)}
     rank = np.array([order[int(c)] for c in found.left * n_images + found.right], dtype=np.intp)
-    return _selected(found, np.argsort(rank))
+    return found.subset(np.argsort(rank))
 
 
 def _tie_rays(block: Block) -> _Ints:
@@ -214,19 +238,4 @@ def _grouped(code: _Ints, ray_i: _Ints, ray_j: _Ints, n_images: int) -> ImagePai
         offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.intp),
         left_ray=ray_i[order],
         right_ray=ray_j[order],
-    )
-
-
-def _selected(pairs: ImagePairs, which: NDArray[np.bool_] | _Ints) -> ImagePairs:
-    """The pairs `which` (mask or order), with their points."""
-    chosen = np.arange(len(pairs))[which]
-    counts = pairs.n_points[chosen]
-    offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.intp)
-    points = np.repeat(pairs.offsets[chosen] - offsets[:-1], counts) + np.arange(offsets[-1])
-    return ImagePairs(
-        left=pairs.left[chosen],
-        right=pairs.right[chosen],
-        offsets=offsets,
-        left_ray=pairs.left_ray[points],
-        right_ray=pairs.right_ray[points],
     )
