@@ -151,6 +151,8 @@ class GroundFrame:
     def _convergence(self, longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> _Floats:
         # PROJ's factors, unlike its projections, count longitude from the crs's own meridian.
         longitude = np.asarray(longitude_deg) - _prime_meridian_deg(self._crs)
+        if longitude.size == 0:  # which PROJ's factors refuse
+            return np.zeros(longitude.shape)
         factors = _projection(self._crs).get_factors(longitude, latitude_deg)
         return np.radians(_finite_or_nan(factors.meridian_convergence))
 

@@ -149,3 +149,12 @@ def test_a_geoid_grid_that_is_none_is_refused(tmp_path) -> None:
     broken.write_bytes(b"not a grid")
     with pytest.raises(GeometryError, match=r"geoid grid broken\.gtx"):
         GroundFrame.tangent("EPSG:32631", [(5e5, 5e6, 0.0)], broken)
+
+
+def test_no_positions_have_no_mapping_but_break_nothing() -> None:
+    """A block without check points asks for the axes at none."""
+    frame = GroundFrame.tangent("EPSG:2154", [(700_000.0, 6_600_000.0, 0.0)])
+    none = np.empty((0, 3))
+    assert frame.to_computing(none).shape == frame.to_crs(none).shape == (0, 3)
+    assert frame.computing_from_crs_axes(none).shape == (0, 3, 3)
+    assert frame.convergence_rad(none).shape == (0,)
