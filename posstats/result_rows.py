@@ -132,6 +132,7 @@ def _means(analysis: Analysis, key: str, name: str, rms_px: _Floats) -> Iterator
         yield {
             "strip": each.strip,
             key: name,
+            "n_models": each.n_models,
             "mean_mm": each.mean_mm,
             "mean_px": each.mean_px,
         }

@@ -6,10 +6,11 @@ from typing import ClassVar
 
 from . import figures, sections
 from .figure_style import Drawing
+from .key_figures import KeyFigure, key_figures
 from .results_view import Results
 from .sections import Bullets, Content, Paragraph
 from .tables import Table
-from .verdict import KeyFigure, is_coarse, key_figures, paragraph
+from .verdict import is_coarse, paragraph
 
 SIMULATED = "Simulated data"
 

@@ -54,9 +54,9 @@ def by_model(results: Results) -> style.Drawing | None:
         if key == "corrected_px" and not chosen:
             continue  # the same as the POS: it would hide it
         y = [np.nan if model[key] is None else model[key] for model in ordered]
-        hollow = key == "corrected_px"
-        axis.plot(range(len(y)), y, marker, ms=2.6, mew=0.7, color=colour,
-                  mfc="none" if hollow else colour, label=label)  # fmt: skip
+        look = {"marker": marker, "ls": "", "ms": 2.6, "mew": 0.7, "color": colour, "mfc": "none"}
+        look = style.dots(colour, 2.8) if marker == "o" else look
+        axis.plot(range(len(y)), y, label=label, **look)
     style.log_axis(axis, values)
     _strip_bands(axis, [model["strip"] for model in ordered])
     axis.set_ylabel("RMS vertical parallax, px")

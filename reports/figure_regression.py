@@ -12,7 +12,7 @@ from scipy.special import stdtrit
 
 from . import figure_style as style
 from . import format as fmt
-from .results_view import Results, Row, angles, frames, rows, setting
+from .results_view import Results, Row, angles, decided_by_strip, first, rows, setting
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -62,14 +62,10 @@ def _line(row: Row, *names: str) -> Line | None:
 
 
 def regressions(results: Results) -> list[style.Drawing]:
-    """One figure per frame and angle whose errors are in the results."""
-    drawings = []
-    for frame in frames(results) or ["ground"]:
-        for angle in angles(frame):
-            drawing = _regression(results, frame, angle)
-            if drawing:
-                drawings.append(drawing)
-    return drawings
+    """One figure per angle of the frame of the corrections, if its errors are in the results."""
+    frame = setting(results, "frame", "ground")
+    drawings = [_regression(results, frame, angle) for angle in angles(frame)]
+    return [drawing for drawing in drawings if drawing]
 
 
 def _regression(results: Results, frame: str, angle: str) -> style.Drawing | None:
@@ -87,6 +83,9 @@ def _regression(results: Results, frame: str, angle: str) -> style.Drawing | Non
         times = np.array([row["time_s"] for row in data if scope in ("block", row["strip"])])
         _draw_line(upper, ols, times, start, unit, style.BLACK, "-", "OLS line, 95 % band")
         _draw_line(upper, gls, times, start, unit, style.PURPLE, "--", "GLS line, 95 % band")
+    for row in rows(results, "selection", frame=frame, angle=angle, form="constant"):
+        _draw_constant(upper, results, row, unit)
+    _keep_data_large(upper, [row[f"{angle}_rad"] * unit.per_si for row in data])
     _axes(upper, lower, angle, unit)
     _legend(figure, upper)
     caption = _caption(angle, frame, start, bool(lines))
@@ -96,7 +95,7 @@ def _regression(results: Results, frame: str, angle: str) -> style.Drawing | Non
 
 def _fitted(results: Results, frame: str, angle: str) -> dict[str, tuple[Line | None, Line | None]]:
     """Lines of the scope the analysis decided at: the block's, or one per strip."""
-    by_strip = setting(results, "scope", "block") == "strip"
+    by_strip = decided_by_strip(results)
     fitted = {}
     for row in rows(results, "regression", frame=frame, angle=angle):
         if (row["scope"] != "block") == by_strip and (ordinary(row) or generalised(row)):
@@ -137,13 +136,29 @@ def _draw_line(
 ) -> None:
     if line is None or not times.size:
         return
-    grid = np.linspace(times.min(), times.max(), 60)
+    grid = np.linspace(times.min(), times.max(), 40)
     middle, half = line.at(grid), line.half_width(grid)
     known = label in axis.get_legend_handles_labels()[1]
     axis.fill_between(grid - start, (middle - half) * unit.per_si, (middle + half) * unit.per_si,
                       color=colour, alpha=0.22, lw=0)  # fmt: skip
     axis.plot(grid - start, middle * unit.per_si, color=colour, ls=dash, lw=1.3,
               label="_" if known else label)  # fmt: skip
+
+
+def _draw_constant(axis: Axes, results: Results, decision: Row, unit: fmt.Unit) -> None:
+    """The constant that is taken off the whole block."""
+    which = {key: decision[key] for key in ("frame", "angle", "scope")}
+    constant = first(results, "regression", **which).get("constant_rad")
+    if decision["scope"] == "block" and constant is not None:
+        axis.axhline(constant * unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
+                     label="constant taken off")  # fmt: skip
+
+
+def _keep_data_large(axis: Axes, values: Sequence[float]) -> None:
+    """Limits at which no wide confidence band makes the data small."""
+    room = max(max(values) - min(values), 1e-12)
+    low, high = axis.get_ylim()
+    axis.set_ylim(max(low, min(values) - 0.3 * room), min(high, max(values) + 0.3 * room))
 
 
 def _axes(upper: Axes, lower: Axes, angle: str, unit: fmt.Unit) -> None:

@@ -29,7 +29,7 @@ def by_strip(results: Results, unit: str) -> Table:
     for method, words in METHODS.items():
         part = [first(results, "parallax", strip=s, method=method) for s in kept]
         if any(not fmt.is_missing(row.get("mean_px")) for row in part):
-            columns += _extremes(results, part, unit, words)
+            columns += _extremes(part, unit, words)
     place = "on the image, " if unit == "px" else "at image scale, "
     caption = (
         f"Vertical parallax by strip {place}{unit}: maximum, minimum and mean over the stereo "
@@ -42,12 +42,12 @@ def by_strip(results: Results, unit: str) -> Table:
     return Table(f"parallax_{unit}", caption, tuple(columns), notes, frozenset({len(kept)}))
 
 
-def _extremes(results: Results, part: Sequence[Row], unit: str, words: str) -> list[Column]:
+def _extremes(part: Sequence[Row], unit: str, words: str) -> list[Column]:
     values = {name: [row.get(f"{name}_{unit}") for row in part] for name in ("max", "min", "mean")}
     block = {
         "max": max(fmt.present(values["max"]), default=None),
         "min": min(fmt.present(values["min"]), default=None),
-        "mean": mean_over_models(results, part, f"mean_{unit}"),
+        "mean": mean_over_models(part, f"mean_{unit}"),
     }
     decimals = fmt.shared_decimals([v for column in values.values() for v in column])
     return [

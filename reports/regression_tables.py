@@ -196,7 +196,9 @@ def _reasons(results: Results) -> list[str]:
 
 
 def _block_rows(kept: Sequence[Row]) -> frozenset[int]:
-    return frozenset(k for k, row in enumerate(kept) if row["scope"] == "block")
+    """Rows of the block, where rows of strips stand below them."""
+    block = frozenset(k for k, row in enumerate(kept) if row["scope"] == "block")
+    return block if len(block) < len(kept) else frozenset()
 
 
 def _statistic(value: float | None) -> str:

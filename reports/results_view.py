@@ -53,18 +53,11 @@ def strips_with_models(results: Results) -> list[str]:
     return [strip for strip in strips(results) if strip in present]
 
 
-def mean_over_models(
-    results: Results, per_strip: Iterable[Row], key: str = "mean_px"
-) -> float | None:
+def mean_over_models(per_strip: Iterable[Row], key: str = "mean_px") -> float | None:
     """Mean over the models of the block: strip means weighted by the models of their strips."""
-    total, weight = 0.0, 0
-    for row in per_strip:
-        n = row.get("n_models")
-        if n is None:  # held and corrected angles: as many as can be oriented
-            n = first(results, "parallax", strip=row["strip"], method="dependent").get("n_models")
-        if n and not fmt.is_missing(row.get(key)):
-            total, weight = total + n * row[key], weight + n
-    return total / weight if weight else None
+    known = [row for row in per_strip if not fmt.is_missing(row.get(key))]
+    weight = sum(row["n_models"] for row in known)
+    return sum(row["n_models"] * row[key] for row in known) / weight if weight else None
 
 
 def setting(results: Results, name: str, default: str = "") -> str:

@@ -3,10 +3,12 @@
 import textwrap
 from collections.abc import Iterator
 
+from . import format as fmt
 from . import verdict
-from .results_view import Results
+from .results_view import Results, decided_by_strip, rows
 
 WIDTH = 88
+SHOWN_STRIPS = 12
 
 
 def summary(results: Results) -> Iterator[str]:
@@ -17,9 +19,21 @@ def summary(results: Results) -> Iterator[str]:
     yield ""
     yield from textwrap.wrap(verdict.paragraph(results), WIDTH)
     yield ""
-    for row in results["selection"]:
-        scope = "" if row["scope"] == "block" else f" strip {row['scope']}"
-        line = f"{row['angle']}{scope}: {row['form']} ({row['reason']})"
+    for line in _decisions(results):
         yield from textwrap.wrap(line, WIDTH, subsequent_indent="  ")
     for warning in results["warnings"]:
         yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
+
+
+def _decisions(results: Results) -> Iterator[str]:
+    """One line per angle; reasons where the block was decided as a whole."""
+    if not decided_by_strip(results):
+        for row in results["selection"]:
+            yield f"{row['angle']}: {row['form']} ({fmt.prose(row['reason'])})"
+        return
+    for angle in dict.fromkeys(row["angle"] for row in results["selection"]):
+        decided = rows(results, "selection", angle=angle)
+        made = [f"strip {row['scope']} {row['form']}" for row in decided if row["correct"]]
+        more = f" and {len(made) - SHOWN_STRIPS} more" if len(made) > SHOWN_STRIPS else ""
+        which = f": {', '.join(made[:SHOWN_STRIPS])}{more}" if made else ""
+        yield f"{angle}: corrected in {len(made)} of {len(decided)} strips{which}"

@@ -1,27 +1,29 @@
-"""The verdict on a block in one paragraph of plain words, and its key figures."""
+"""The verdict on a block in one paragraph of plain words."""
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from . import format as fmt
-from .results_view import Results, Row, angles, first, mean_over_models, rows, setting, verdict
+from .results_view import (
+    Results,
+    Row,
+    angles,
+    decided_by_strip,
+    first,
+    rows,
+    setting,
+    verdict,
+)
+from .verdict_cause import NEAR_RELATIVE, cause, over_time
 
 COARSE_PX = 50.0  # neither stereo viewing nor matching bridges this much parallax
-NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
+MUCH_LEFT = 3.0  # multiple of relative orientation's from which the rest is explained
 SKEWED = 1.25  # mean over median from which the median is told beside the mean
-SIGNIFICANT = 0.05
-ALONE = 0.9  # share of the cause from which other angles need no word
-
-
-@dataclass(frozen=True)
-class KeyFigure:
-    """One number of the verdict, with what it is and a remark."""
-
-    label: str
-    value: str
-    unit: str
-    remark: str
+FORMS = {"linear": "linear in time", "constant": "constant"}
+START_ONLY = (
+    "these orientations can serve as start values of an aerial triangulation, not for direct "
+    "georeferencing"
+)
 
 
 def paragraph(results: Results) -> str:
@@ -36,8 +38,8 @@ def paragraph(results: Results) -> str:
         sentences = [
             _too_coarse(results),
             _raw(results),
-            _cause(results),
-            _time(results),
+            cause(results),
+            over_time(results),
             _correction(results),
             _left(results),
             _check_points(results),
@@ -51,33 +53,6 @@ def is_coarse(results: Results) -> bool:
     numbers = verdict(results)
     values = fmt.present(numbers.get(key) for key in ("raw_px", "corrected_px"))
     return min(values, default=0.0) >= COARSE_PX
-
-
-def key_figures(results: Results) -> tuple[KeyFigure, ...]:
-    """Parallax from POS, after correction and after relative orientation; check-point accuracy."""
-    numbers = verdict(results)
-    figures = [
-        _parallax_figure(numbers, name, label)
-        for name, label in (
-            ("raw", "POS as delivered"),
-            ("corrected", "POS, corrected"),
-            ("relative", "Relative orientation"),
-        )
-        if name != "corrected" or numbers.get("corrected_angles")
-    ]
-    point = first(results, "check_points", orientation="selected", translation_removed=False)
-    if not fmt.is_missing(point.get("rmse_horizontal_m")):
-        value = f"{fmt.number(point['rmse_horizontal_m'])} / {fmt.number(point['rmse_vertical_m'])}"
-        label = "Check points, corrected" if numbers.get("corrected_angles") else "Check points"
-        remark = f"RMSE H / V, {point['n']} points, mean kept"
-        figures.append(KeyFigure(label, value, "m", remark))
-    return tuple(figures)
-
-
-def _parallax_figure(numbers: Row, name: str, label: str) -> KeyFigure:
-    mm = numbers.get(f"{name}_mm")
-    remark = "mean vertical parallax" + ("" if fmt.is_missing(mm) else f", {_mm(mm)}")
-    return KeyFigure(label, fmt.number(numbers.get(f"{name}_px")), "px", remark)
 
 
 def _too_coarse(results: Results) -> str:
@@ -112,76 +87,13 @@ def _raw(results: Results) -> str:
     return f"{text}."
 
 
-def _cause(results: Results) -> str:
-    numbers = verdict(results)
-    cause, raw, relative = (numbers.get(key) for key in ("cause", "raw_px", "relative_px"))
-    if cause:
-        held = mean_over_models(results, rows(results, "error_sources", fixed=cause))
-        every = mean_over_models(results, rows(results, "error_sources", fixed="angles"))
-        share = numbers.get("cause_share")
-        most = share is not None and share < ALONE
-        text = f"{'Most of it comes' if most else 'The parallax comes'} from {cause}"
-        if held is not None and every is not None:
-            text += (
-                f": relative orientation with {cause} held at its POS value leaves "
-                f"{fmt.with_unit(held, 'px')}, with all three angles held "
-                f"{fmt.with_unit(every, 'px')}"
-            )
-        return f"{text}."
-    if relative and raw / relative < NEAR_RELATIVE:
-        return "This is about as good as the images allow, and no angle stands out."
-    return "It cannot be laid to one angle alone: held one by one, several keep the parallax high."
-
-
-def _time(results: Results) -> str:
-    """Whether the error of the cause (or of every angle) follows time, by OLS and GLS."""
-    cause = verdict(results).get("cause")
-    if not cause:
-        return _shares(results)
-    row = first(results, "regression", angle=cause, frame="ground", scope="block")
-    if fmt.is_missing(row.get("r_squared")):
-        why = row.get("reason")
-        return f"Whether its error follows time could not be tested{f' ({why})' if why else ''}."
-    evidence = (
-        f"R² = {fmt.fixed(row['r_squared'], 3)}, {fmt.p_phrase(row['p_value'])}, "
-        f"{row['n']} images at {row['n_time_clusters']} separate times"
-    )
-    middle = f"Its error is {fmt.angle(row['intercept_rad'])} at mid-time"
-    if row["p_value"] is None or row["p_value"] >= SIGNIFICANT:
-        return f"{middle} and does not follow time ({evidence})."
-    change = fmt.rate(row["slope_rad_per_s"])
-    return f"{middle} and follows time: it changes by {change} ({evidence}); {_surely(row)}."
-
-
-def _surely(row: Row) -> str:
-    low, high = row.get("gls_slope_ci95") or (None, None)
-    if low is None or high is None:
-        return "with correlated errors allowed for, no interval can be given"
-    unit = fmt.rate_unit([low, high])
-    ends = f"{fmt.number(unit.scaled(low))} to {fmt.number(unit.scaled(high))}"
-    zero = "includes zero, so a drift is not proven" if low <= 0.0 <= high else "excludes zero"
-    return (
-        f"with correlated errors allowed for, the 95 % interval of this rate, "
-        f"({ends})\u00a0×\u00a0{unit.name}, {zero}"
-    )
-
-
-def _shares(results: Results) -> str:
-    tested = [
-        f"{row['angle']} {fmt.fixed(row['r_squared'], 2)}"
-        for row in rows(results, "regression", frame="ground", scope="block")
-        if not fmt.is_missing(row["r_squared"])
-    ]
-    if not tested:
-        return "Whether the angle errors follow time could not be tested."
-    return f"A line over time explains this share (R²) of the angle errors: {fmt.joined(tested)}."
-
-
 def _correction(results: Results) -> str:
     chosen = verdict(results).get("corrected_angles") or []
-    rules = f"By the rules “{setting(results, 'rules', 'paper')}”"
+    strip_wise = ", strip by strip," if decided_by_strip(results) else ""
+    rules = f"By the rules “{setting(results, 'rules', 'paper')}”{strip_wise}"
     if not chosen:
-        return f"{rules} no angle was corrected, so this parallax remains."
+        only = f"; {START_ONLY}" if is_coarse(results) else ""
+        return f"{rules} no angle was corrected, so this parallax remains{only}."
     what = fmt.joined(f"{angle} ({_form(results, angle)})" for angle in chosen)
     others = [a for a in angles(setting(results, "frame", "ground")) if a not in chosen]
     left = f"; {fmt.joined(others)} stayed as delivered" if others else ""
@@ -189,10 +101,17 @@ def _correction(results: Results) -> str:
 
 
 def _form(results: Results, angle: str) -> str:
-    """``linear in time``, ``constant``, or both where strips differ."""
-    words = {"linear": "linear in time"}
-    forms = {row["form"] for row in rows(results, "selection", angle=angle, correct=True)}
-    return fmt.joined(sorted(words.get(form, form) for form in forms), "or")
+    """``linear in time``, ``constant of 18 mrad``, or in how many strips which."""
+    decided = rows(results, "selection", angle=angle)
+    made = [row for row in decided if row["correct"]]
+    forms = fmt.joined(sorted({FORMS[row["form"]] for row in made}), "or")
+    if decided_by_strip(results):
+        return f"{forms} in {len(made)} of {len(decided)} strips"
+    frame = setting(results, "frame", "ground")
+    fit = first(results, "regression", angle=angle, frame=frame, scope="block")
+    if forms == "constant" and not fmt.is_missing(fit.get("constant_rad")):
+        return f"constant of {fmt.angle(fit['constant_rad'])}"
+    return forms
 
 
 def _left(results: Results) -> str:
@@ -203,7 +122,39 @@ def _left(results: Results) -> str:
     text = f"The correction leaves {_parallax(numbers, 'corrected')}"
     if relative:
         text += f", {_times(corrected / relative)} what relative orientation leaves"
-    return f"{text}."
+    if is_coarse(results):
+        return f"{text}; {START_ONLY}."
+    much = relative and corrected / relative >= MUCH_LEFT
+    return f"{text}.{_scatter(results) if much else ''}"
+
+
+def _scatter(results: Results) -> str:
+    """What the corrections leave in the angles, and how much of it no line can take off."""
+    named, remaining, about_line = [], [], []
+    frame = setting(results, "frame", "ground")
+    for angle in angles(frame):
+        size = first(results, "angle_error_summary", angle=angle, frame=frame)
+        fit = first(results, "regression", angle=angle, frame=frame, scope="block")
+        form = first(results, "selection", angle=angle).get("form")
+        if fmt.is_missing(size.get("rms_rad")) or fmt.is_missing(fit.get("sigma_rad")):
+            return ""
+        mean = size["mean_rad"] if form == "constant" else 0.0
+        named.append(angle)
+        about_line.append(fit["sigma_rad"])
+        rest = math.sqrt(size["rms_rad"] ** 2 - mean**2)
+        remaining.append(fit["sigma_rad"] if form == "linear" else rest)
+    if math.hypot(*about_line) < 0.5 * math.hypot(*remaining):
+        return ""
+    unit = fmt.angle_unit(remaining)
+    sizes = fmt.joined(
+        f"{fmt.with_unit(unit.scaled(value), unit.name, 2)} in {angle}"
+        for angle, value in zip(named, remaining, strict=True)
+    )
+    lines = fmt.joined(fmt.number(unit.scaled(value), 2) for value in about_line)
+    return (
+        f" What is left in the angles is {sizes} (RMS); {lines} {unit.name} of it is scatter from "
+        "image to image about the lines, which no line over time can take off."
+    )
 
 
 def _check_points(results: Results) -> str:

@@ -14,7 +14,7 @@ ROW_KEYS = {
     "parallax": "strip method n_models max_mm min_mm mean_mm max_px min_px mean_px",
     "models": "left right strip n_points n_rejected pos_px independent_px dependent_px"
     " corrected_px",
-    "error_sources": "strip fixed mean_mm mean_px",
+    "error_sources": "strip fixed n_models mean_mm mean_px",
     "angle_errors": "image strip time_s omega_rad phi_rad kappa_rad sigma_omega_rad sigma_phi_rad"
     " sigma_kappa_rad used",
     "regression": "angle frame scope n n_time_clusters intercept_rad slope_rad_per_s time_origin_s"
@@ -23,7 +23,7 @@ ROW_KEYS = {
     " sigma_rad gls_intercept_rad gls_intercept_se gls_cov_intercept_slope gls_df_resid"
     " white_noise_sigma_rad strip_effect_sigma_rad constant_rad constant_se_rad reason",
     "selection": "angle frame scope correct form rule reason",
-    "corrected_parallax": "strip corrected mean_mm mean_px",
+    "corrected_parallax": "strip corrected n_models mean_mm mean_px",
     "check_points": "orientation translation_removed n max_horizontal_m max_vertical_m"
     " min_horizontal_m min_vertical_m rmse_horizontal_m rmse_vertical_m shift_m",
     "check_point_residuals": "orientation point x_m y_m z_m dx_m dy_m dz_m n_rays sigma_x_m"
@@ -87,7 +87,12 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> dict[
         "parallax": _parallax(models, strips),
         "models": models,
         "error_sources": [
-            {"strip": s, "fixed": name, **_both("mean", value * rng.uniform(0.95, 1.05))}
+            {
+                "strip": s,
+                "fixed": name,
+                "n_models": per_strip - 1,
+                **_both("mean", value * rng.uniform(0.95, 1.05)),
+            }
             for s in strips
             for name, value in held.items()
         ],
@@ -100,7 +105,12 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> dict[
             _decision("kappa", "none", "R2 0.06 is below 0.8"),
         ],
         "corrected_parallax": [
-            {"strip": s, "corrected": name, **_both("mean", value * rng.uniform(0.95, 1.05))}
+            {
+                "strip": s,
+                "corrected": name,
+                "n_models": per_strip - 1,
+                **_both("mean", value * rng.uniform(0.95, 1.05)),
+            }
             for s in strips
             for name, value in corrected.items()
         ],
