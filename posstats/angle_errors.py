@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations
 from posstats.coplanarity_adjustment import AdjustedBlock, Priors, adjust
-from posstats.coplanarity_pairs import PointPairs, long_bases, point_pairs
+from posstats.coplanarity_pairs import SHORTEST_BASE, PointPairs, long_bases, point_pairs
 from posstats.errors import GeometryError
 from posstats.observability import (
     UNDETERMINED_SHARE,
@@ -30,10 +30,11 @@ from posstats.rotation import (
     vector_from_rotation,
     wrapped,
 )
-from posstats.stereo import StereoModels, cross_strip_pairs
+from posstats.stereo import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
+_Ints = NDArray[np.intp]
 _Ids = NDArray[np.object_]
 
 SMALLEST_ANGLE_PRIOR_RAD = float(np.radians(1.0))
@@ -166,15 +167,27 @@ def coplanarity_errors(
         system=pos.system,
         image_px=block.accuracy.image_px,
     )
-    return _errors(pos, pairs, priors, adjust(pairs, priors, robust=robust, progress=progress))
+    errors = _errors(pos, pairs, priors, adjust(pairs, priors, robust=robust, progress=progress))
+    return replace(errors, warnings=_short_bases(long) + errors.warnings)
+
+
+def _short_bases(long: _Bools) -> tuple[str, ...]:
+    """One sentence that counts the pairs of images left out, or none."""
+    n_short = int(np.count_nonzero(~long))
+    if n_short == 0:
+        return ()
+    return (
+        f"{n_short} of {len(long)} pairs of images left out of the angle errors: their base is not"
+        f" longer than {SHORTEST_BASE:g} of its standard deviations, so its direction is unknown",
+    )
 
 
 def _errors(
     pos: Orientations, pairs: PointPairs, priors: Priors, adjusted: AdjustedBlock
 ) -> AngleErrors:
     n = len(pos)
-    tied = np.zeros(n, dtype=bool)
-    tied[pairs.left] = tied[pairs.right] = True
+    n_points = pairs.n_points_of_images(n)
+    tied = n_points > 0
     error = wrapped(pos.angles_rad - adjusted.angles_rad)
     covariance = adjusted.covariance_rad2.copy()
     variance = np.diagonal(covariance.reshape(3 * n, 3 * n)).reshape(n, 3)
@@ -205,9 +218,25 @@ def _errors(
         used=determined,
         observability=found,
         sigma0=adjusted.sigma_px,
-        warnings=(
-            *_listed("no tie points in common with another image", pos.image[~tied]),
-            *_listed("angles undetermined", pos.image[tied & ~determined]),
+        warnings=_undetermined(pos.image, n_points, determined),
+    )
+
+
+def _undetermined(image: _Ids, n_points: _Ints, determined: _Bools) -> tuple[str, ...]:
+    """The images without a usable angle, by reason."""
+    too_few = ~determined & (n_points > 0) & (n_points < MIN_MODEL_POINTS)
+    loose = ~determined & (n_points >= MIN_MODEL_POINTS)
+    return (
+        *_listed("no tie points in common with another image", image[n_points == 0]),
+        *_listed(
+            f"angles undetermined, fewer than {MIN_MODEL_POINTS} tie points in common with other"
+            " images",
+            image[too_few],
+        ),
+        *_listed(
+            f"angles undetermined, standard deviation above {UNDETERMINED_SHARE:g} of the prior"
+            " one in spite of common tie points",
+            image[loose],
         ),
     )
 
@@ -238,7 +267,7 @@ def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErr
     covariance = errors.covariance_rad2
     if covariance is not None:
         turn = _inverse_left_jacobian(error) @ _about_image_axes(estimated, orientations)
-        covariance = np.einsum("iab,ibjc,jdc->iajd", turn, covariance, turn, optimize=True)
+        covariance = _turned(covariance, turn)
     return replace(errors, frame="camera", error_rad=error, covariance_rad2=covariance)
 
 
@@ -257,10 +286,13 @@ def _about_ground_axes(
     """Covariance (n, 3, n, 3) of small rotations about the ground axes, from that of angles."""
     rotation = rotation_from_angles(angles_rad, orientations.system)
     turn = rotation @ _about_image_axes(angles_rad, orientations)
-    covariance: _Floats = np.einsum(
-        "iab,ibjc,jdc->iajd", turn, covariance_rad2, turn, optimize=True
-    )
-    return covariance
+    return _turned(covariance_rad2, turn)
+
+
+def _turned(covariance: _Floats, turn: _Floats) -> _Floats:
+    """Covariance (n, 3, n, 3) of turn (n, 3, 3) times the vectors; exactly symmetric."""
+    turned: _Floats = np.einsum("iab,ibjc,jdc->iajd", turn, covariance, turn, optimize=True)
+    return 0.5 * (turned + turned.transpose(2, 3, 0, 1))
 
 
 def _inverse_left_jacobian(vector_rad: _Floats) -> _Floats:

@@ -50,6 +50,12 @@ class PointPairs:
     first_ray: _Ints
     n_rays: _Ints
 
+    def n_points_of_images(self, n_images: int) -> _Ints:
+        """(n_images,) number of points that each image has in common with another one."""
+        used = np.zeros(len(self.ray_image), dtype=bool)
+        used[self.left_ray] = used[self.right_ray] = True
+        return np.bincount(self.ray_image[used], minlength=n_images)
+
 
 def point_pairs(block: Block, pairs: ImagePairs) -> PointPairs:
     """The common points of pairs of images, gathered point by point."""

@@ -62,9 +62,10 @@ class EstimatedAngles:
 def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
     """What the block as a whole, then every strip in order of flight, leaves undetermined.
 
-    A common rotation of a scope is the best weighted mean of the rotations of its images (single
-    undetermined images do not spoil it); it is open where its standard deviation, from the
-    covariance of the adjustment, exceeds a tenth of the prior one.
+    A common rotation of a scope is the mean of the rotations of its images, each weighted by the
+    inverse of its own covariance, so that a single loose image does not spoil it. It is open
+    where its standard deviation, from the covariance of the adjustment, exceeds a tenth of the
+    prior one.
     """
     everywhere = np.ones(len(angles.image), dtype=bool)
     scopes = [("block", everywhere)]
@@ -81,22 +82,44 @@ def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
 
 def _open_rotations(angles: EstimatedAngles, inside: _Bools) -> Iterator[str]:
     images = np.flatnonzero(inside)
-    if len(images) == 0:
+    if len(images) < 2:
         return
-    covariance = angles.rotation_covariance_rad2[images][:, :, images]
-    each = np.tile(np.eye(3), (len(images), 1))
-    information = each.T @ np.linalg.solve(covariance.reshape(len(each), len(each)), each)
-    variances, axes = np.linalg.eigh(np.linalg.inv(information))
+    covariance = _mean_covariance(angles.rotation_covariance_rad2[images][:, :, images])
     limit = UNDETERMINED_SHARE * float(angles.prior_sigma_rad[images].min())
-    along = _flight_axis(angles.position_m[images])
-    for variance, axis in zip(variances, axes.T, strict=True):
+    along = _flight_axis(angles.position_m[images], angles.strip[images])
+    for variance, axis in zip(*_principal_axes(covariance), strict=True):
         if variance > limit**2:
             yield _axis_name(axis, along)
 
 
-def _flight_axis(position_m: _Floats) -> _Floats:
-    """Unit vector (3,) along which the projection centres spread most."""
-    _, _, axes = np.linalg.svd(position_m - position_m.mean(axis=0), full_matrices=False)
+def _mean_covariance(covariance: _Floats) -> _Floats:
+    """Covariance (3, 3) of the weighted mean of n vectors whose covariance is (n, 3, n, 3).
+
+    The weights are the inverse covariances of the single vectors. The best linear mean would
+    not do: correlated vectors get negative weights, and a rotation that the images share but
+    for a small part would pass as determined.
+    """
+    weight = np.linalg.inv(np.einsum("iaib->iab", covariance))
+    scatter = np.einsum("iab,ibjc,jcd->ad", weight, covariance, weight, optimize=True)
+    inverse = np.linalg.inv(weight.sum(axis=0))
+    mean: _Floats = inverse @ scatter @ inverse
+    return mean
+
+
+def _principal_axes(covariance: _Floats) -> tuple[_Floats, _Floats]:
+    """Variances (3,) and unit vectors (3, 3), row by row."""
+    variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
+    return variances, axes.T
+
+
+def _flight_axis(position_m: _Floats, strip: _Ids) -> _Floats:
+    """Unit vector (3,) closest to the bases between consecutive images of a strip.
+
+    Where no strip has two images, to the way from image to image.
+    """
+    base = np.diff(position_m, axis=0)
+    same = strip[1:] == strip[:-1]
+    _, _, axes = np.linalg.svd(base[same] if same.any() else base, full_matrices=False)
     axis: _Floats = axes[0]
     return axis
 

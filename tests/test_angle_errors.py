@@ -1,6 +1,7 @@
 """Angle errors: simulated truth, Monte Carlo, invariances, numerical derivatives, real blocks."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from small_blocks import Layout, observed_block, true_block
 
 from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera_frame
 from posstats.block import Block, GroundPoints
-from posstats.block_io import read_block
+from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.regression import fit_drift
 from posstats.rotation import (
@@ -139,6 +140,59 @@ def test_order_of_tie_points_ids_does_not_matter():
     np.testing.assert_allclose(found.error_rad, errors_of(block).error_rad, atol=1e-11)
 
 
+def test_names_of_images_and_order_of_rows_do_not_matter(tmp_path):
+    """The block written, its images renamed against the order of flight, its rows shuffled."""
+    block = observed_block(true_block(SIDE_OVERLAP), np.random.default_rng(7))
+    write_block(block, tmp_path)
+    before = errors_of(read_block(tmp_path))
+    shuffled = np.random.default_rng(1)
+    for name in ("orientations.csv", "tie_points.csv"):
+        head, *rows = (tmp_path / name).read_text().splitlines()
+        renamed = [re.sub(r"\bi00(\d)\b", lambda m: f"x{9 - int(m[1])}", row) for row in rows]
+        shuffled.shuffle(renamed)
+        (tmp_path / name).write_text("\n".join([head, *renamed]) + "\n")
+    after = errors_of(read_block(tmp_path))
+    assert list(after.image) == [f"x{9 - k}" for k in range(10)]
+    np.testing.assert_allclose(after.error_rad, before.error_rad, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(after.covariance_rad2, before.covariance_rad2, rtol=1e-6, atol=1e-18)
+
+
+def test_the_order_in_which_the_strips_were_flown_does_not_matter():
+    """Parallax is then measured in the other image of every pair across: equal within noise."""
+    block = observed_block(true_block(SIDE_OVERLAP), np.random.default_rng(7))
+    pos, ties = block.orientations, block.tie_points
+    order = np.concatenate([np.arange(5, 10), np.arange(5)])  # its own inverse
+    columns = ("image", "strip", "position_m", "angles_rad", "sigma_position_m", "sigma_angles_rad")
+    swapped = replace(pos, **{name: getattr(pos, name)[order] for name in columns})
+    image = order[ties.image]
+    rows = np.lexsort((image, ties.point))
+    moved = replace(ties, point=ties.point[rows], image=image[rows], xy_px=ties.xy_px[rows])
+    before = errors_of(block, robust=False)
+    after = errors_of(replace(block, orientations=swapped, tie_points=moved), robust=False)
+    miss = (after.error_rad[order] - before.error_rad) / before.sigma_rad
+    assert np.abs(miss).max() < 0.05
+    np.testing.assert_allclose(after.sigma_rad[order], before.sigma_rad, rtol=0.01)
+
+
+def test_robust_and_plain_agree_on_data_without_blunders():
+    """Rejecting beyond 3.5 sigma costs nothing: a small part of a standard deviation."""
+    truth = true_block(SIDE_OVERLAP)
+    rng = np.random.default_rng(14)
+    for _ in range(3):
+        block = observed_block(truth, rng, some_errors(truth))
+        robust, plain = errors_of(block), errors_of(block, robust=False)
+        assert np.abs((robust.error_rad - plain.error_rad) / plain.sigma_rad).max() < 0.5
+        np.testing.assert_allclose(robust.sigma_rad, plain.sigma_rad, rtol=0.03)
+
+
+def test_covariance_is_symmetric_to_the_last_bit_in_both_frames():
+    block = observed_block(true_block(SIDE_OVERLAP), np.random.default_rng(8))
+    ground = errors_of(block)
+    for errors in (ground, in_camera_frame(ground, block.orientations)):
+        covariance = errors.covariance_rad2
+        np.testing.assert_array_equal(covariance, covariance.transpose(2, 3, 0, 1))
+
+
 def test_camera_frame_covariance_is_that_of_the_exact_derivative():
     """Oracle: central differences of log(R_est' R_pos) at errors of up to 20 degrees."""
     truth = true_block(replace(SIDE_OVERLAP, tilt_rad=0.3, system="phi-omega-kappa"))
@@ -172,6 +226,32 @@ def test_roll_of_a_perfectly_straight_strip_is_reported_undetermined():
     assert strip.images == tuple(truth.orientations.image)
     assert not found.used.any()
     assert "undetermined" in found.warnings[0]
+
+
+def test_roll_that_a_crooked_strip_barely_determines_is_open_as_that_of_its_images():
+    """Position jitter bends the axis, so that the images' rotations are not exactly alike."""
+    truth = true_block(Layout(n_strips=1, jitter_m=10.0, n_images=12, n_points=600))
+    found = errors_of(observed_block(truth, np.random.default_rng(0)))
+    limit = np.radians(0.1)
+    assert np.all((limit < found.sigma_rad[:, 1]) & (found.sigma_rad[:, 1] < 1.3 * limit))
+    assert found.observability[0].unobservable == ("rotation about the base axis",)
+
+
+def test_the_base_axis_of_a_wide_block_is_that_of_its_strips():
+    """Strips 5 km apart and 1.2 km long, heading north-east, without common points."""
+    truth = true_block(Layout(strip_distance_m=5000.0, n_points=1500, heading_rad=0.8))
+    found = errors_of(observed_block(truth, np.random.default_rng(0)))
+    assert [each.unobservable for each in found.observability] == [
+        ("rotation about the base axis",)
+    ] * 3
+
+
+def test_pairs_with_too_short_a_base_are_left_out_and_counted():
+    """Two strips flown over the same places within centimetres: five bases of no direction."""
+    truth = true_block(Layout(strip_distance_m=0.0, jitter_m=0.02))
+    found = errors_of(observed_block(truth, np.random.default_rng(0)))
+    assert "5 of 33 pairs of images left out" in found.warnings[0]
+    assert np.isfinite(found.error_rad).all()
 
 
 def test_side_overlap_determines_everything():
@@ -235,6 +315,10 @@ def test_one_badly_tied_image_is_listed_without_calling_its_strip_unobservable()
     found = errors_of(replace(block, tie_points=ties.subset(keep)))
     scope, _, strip = found.observability
     assert scope.images == strip.images == ("i009",)
+    assert found.warnings == (
+        "angles undetermined, fewer than 6 tie points in common with other images"
+        " (1 of the images): i009",
+    )
     assert scope.unobservable == strip.unobservable == ()
     assert found.used[:9].all()
     assert np.isfinite(found.error_rad[9]).all()
