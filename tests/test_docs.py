@@ -1,17 +1,21 @@
 """The documentation is true: its example is a block, its links lead somewhere."""
 
 import re
+import runpy
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import shared_path
+from small_blocks import Layout, observed_block, true_block
 from strip_scene import block, scene
 
 from posstats.accuracy import check_point_residuals
 from posstats.analysis import Settings, analyse
-from posstats.block_io import read_block
+from posstats.block_io import read_block, write_block
 from posstats.results import results
+from posstats.rotation import wrapped
 from posstats.stereo import stereo_models
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -80,3 +84,66 @@ def test_every_key_of_the_results_is_described():
     named = set(re.findall(r"`(\w+)`", page)) | set(re.findall(r"^### (\w+)$", page, re.MULTILINE))
     assert _keys(values) - named == set()
     assert "numpy" in packages
+
+
+def _code(page, language):
+    text = page.read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def _run(code, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "example.py").write_text(code, encoding="utf-8")
+    return runpy.run_path("example.py")
+
+
+def test_the_python_example_of_the_readme_runs(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "block"
+    folder.mkdir()
+    write_block(observed_block(true_block(Layout(n_points=300)), np.random.default_rng(4)), folder)
+    (code,) = _code(DOCS.parent / "README.md", "python")
+    names = _run(code, tmp_path, monkeypatch)
+    assert "('omega', 'none', " in capsys.readouterr().out
+    assert names["analysis"].settings.frame == "auto"
+    assert len(names["models"]) == 8
+    line = np.polyfit([0.0, 10.0, 20.0, 30.0], [1.0e-5, 1.6e-5, 2.3e-5, 2.8e-5], 1)
+    assert names["fit"].slope == pytest.approx(line[0], rel=1e-12)
+
+
+def test_the_worked_example_makes_the_block_it_shows(tmp_path, monkeypatch):
+    """Oracle: the same POS, converted into omega, phi, kappa beside the data."""
+    page = DOCS / "example-seneca.md"
+    folder = tmp_path / "seneca"
+    folder.mkdir()
+    for name in ("raw_pos.csv", "tie_points.csv"):
+        (folder / name).symlink_to(shared_path("data", "seneca", name).resolve())
+    (code,) = _code(page, "python")
+    (settings,) = _code(page, "toml")
+    (folder / "block.toml").write_text(settings, encoding="utf-8")
+    _run(code, tmp_path, monkeypatch)
+    made, given = read_block(folder), read_block(shared_path("data", "seneca"))
+    assert list(made.orientations.image) == list(given.orientations.image)
+    assert list(made.orientations.strip) == list(given.orientations.strip)
+    assert np.allclose(np.diff(made.orientations.time_s), np.diff(given.orientations.time_s))
+    # the given block computes in the grid, this one in the tangent frame: they part by the
+    # curvature of the earth over the field (300 m / 6370 km = 5e-5 rad), not by a convention
+    apart = wrapped(made.orientations.angles_rad - given.orientations.angles_rad)
+    assert np.abs(apart).max() < 1e-4
+    text = page.read_text(encoding="utf-8")
+    assert all(f"warning: {warning}\n" in text for warning in made.warnings)
+    assert f"{len(made.tie_points)} measurements of {len(made.tie_points.point_id)}" in text
+
+
+def test_the_worked_example_quotes_its_verdict():
+    """The numbers in the text are those of the analysis, which `results.json` takes up."""
+    block = read_block(shared_path("data", "seneca"))
+    values = results(analyse(block))
+    text = (DOCS / "example-seneca.md").read_text(encoding="utf-8")
+    verdict = values["verdict"]
+    assert f"mean vertical parallax of {verdict['raw_px']:.0f} px" in text
+    assert f"(median {verdict['raw_median_px']:.0f} px)" in text
+    assert f"the {verdict['relative_px']:.3g} px that relative orientation" in text
+    assert verdict["cause"] == "kappa"
+    assert verdict["corrected_angles"] == []
+    for row in values["angle_error_summary"]:
+        assert f"{row['angle']} by {np.degrees(row['rms_rad']):.2g}°" in text
