@@ -203,7 +203,8 @@ def _paired(time_s: ArrayLike, error_rad: ArrayLike, n_min: int) -> tuple[_Float
     if not (np.isfinite(time).all() and np.isfinite(error).all()):
         raise FitError("times and errors must be finite: leave images without a value out")
     if len(time) < n_min:
-        raise FitError(f"{len(time)} images are too few: this fit needs at least {n_min}")
+        images = "1 image is" if len(time) == 1 else f"{len(time)} images are"
+        raise FitError(f"{images} too few: this fit needs at least {n_min}")
     return time, error
 
 

@@ -141,7 +141,7 @@ def _models(
         polylines(axis, view, part, color=palette(k), lw=3.2, solid_capstyle="butt")
     unknown = [line for line, value in zip(lines, values, strict=True) if value is None]
     polylines(axis, view, unknown, color=style.GREY, lw=1.0, ls=":")
-    size = 1.6 if len(place) < CROWDED else 1.0
+    size = 2.0 if len(place) < CROWDED else 1.2
     axis.plot(*view.drawn(place.values()), **style.dots(style.BLACK, size))
     if len(edges) > 1:
         _colour_bar(figure, axis, view, edges, palette)

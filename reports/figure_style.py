@@ -7,10 +7,10 @@ from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
-from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
 from . import format as fmt
@@ -92,17 +92,11 @@ def finish(figure: Figure, name: str, title: str, caption: str) -> Drawing:
 
     Texts stay texts; `title` becomes the alternative text.
     """
-    _plain_text(figure)
     stream = io.StringIO()
-    figure.savefig(stream, format="svg", metadata=_NO_METADATA)
+    # Figure.savefig would draw a figure of this layout twice.
+    FigureCanvasSVG(figure).print_svg(stream, metadata=_NO_METADATA)
     share = figure.get_figwidth() / WIDTH_IN
     return Drawing(name, title, caption, embeddable(stream.getvalue(), name, title, share))
-
-
-def _plain_text(figure: Figure) -> None:
-    """Ids are shown as they are, wherever a text was made before the setting took hold."""
-    for artist in figure.findobj(Text):
-        artist.set_parse_math(False)
 
 
 def dots(colour: str, size: float) -> dict[str, Any]:

@@ -23,8 +23,8 @@ def data_uri(text: str, weight: str) -> str:
         ``normal`` or ``bold``.
     """
     path = Path(matplotlib.get_data_path(), "fonts", "ttf", WEIGHTS[weight])
-    options = subset.Options(hinting=False, layout_features=["kern", "mark", "mkmk", "ccmp"])
-    options.drop_tables += ["FFTM"]  # FontForge's time stamp
+    options = subset.Options(hinting=False, layout_features=["kern"])
+    options.drop_tables += ["FFTM", "GSUB"]  # FontForge's time stamp; substitutions, all unused
     font = TTFont(path, recalcTimestamp=False)
     cutter = subset.Subsetter(options)
     cutter.populate(text=text + ALWAYS)

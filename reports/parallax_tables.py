@@ -62,10 +62,10 @@ def _extremes(part: Sequence[Row], unit: str, words: str) -> list[Column]:
 
 
 def by_model(results: Results) -> Table:
-    """The models of largest POS parallax and those without a solution (all, if there are few)."""
+    """The models of largest POS parallax (all, if there are few; then without a solution last)."""
     models = rows(results, "models")
     ranked = sorted(
-        models, key=lambda m: -(m["pos_px"] if m["pos_px"] is not None else float("inf"))
+        models, key=lambda m: -(m["pos_px"] if m["pos_px"] is not None else float("-inf"))
     )
     shown = ranked if len(models) <= 2 * SHOWN_MODELS else ranked[:SHOWN_MODELS]
     which = (

@@ -10,12 +10,15 @@ import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 from report_results import area_results, assert_schema, coarse_results
 
 from posstats.errors import PosstatsError
 from posstats.reports import document, figures, html, pdf, tables, verdict
+from posstats.reports.plan_view import PlanView
 from posstats.reports.report import write_report
+from posstats.reports.summary import summary
 
 HOSTILE = "<script>alert(1)</script> \"a\", 'b' & $x_1$"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -338,3 +341,93 @@ def browse(frame: Path, profile: Path) -> tuple[str, str]:
     command = [CHROMIUM, *flags, f"--user-data-dir={profile}", "--dump-dom", frame.as_uri()]
     run = subprocess.run(command, capture_output=True, check=True, text=True, timeout=60)
     return re.search(r'id="told">([^<]*)', run.stdout)[1], run.stderr
+
+
+def at_strips(results):
+    """The results as if decided strip by strip: omega linear in strip 2, nothing else."""
+    made = copy.deepcopy(results)
+    made["settings"]["scope"] = "strip"
+    scopes = dict.fromkeys(row["strip"] for row in made["images"])
+    made["selection"] = [
+        row | {"scope": scope, "correct": linear, "form": "linear" if linear else "none"}
+        for scope in scopes
+        for row in made["selection"]
+        for linear in (row["angle"] == "omega" and scope == "2",)
+    ]
+    return made
+
+
+def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area):
+    results = at_strips(area)
+    text = html.render(document.build(results))
+    matrix = re.search(r'id="table-decisions_by_strip".*?</table>', text, re.DOTALL)[0]
+    assert matrix.count("<tr>") == 1 + results["block"]["n_strips"]
+    reasons = re.search(r'id="table-decisions".*?</table>', text, re.DOTALL)[0]
+    assert reasons.count("<tr>") == 2
+    assert "omega (linear in time in 1 of 5 strips) was corrected" in verdict.paragraph(results)
+    told = list(summary(results))
+    assert "omega: corrected in 1 of 5 strips: strip 2 linear" in told
+    assert "phi: corrected in 0 of 5 strips" in told
+
+
+def test_verdict_of_a_constant_in_the_camera_frame_gives_its_size(area):
+    results = copy.deepcopy(area)
+    results["settings"] |= {"frame": "camera", "rules": "strict"}
+    for key in ("regression", "angle_error_summary", "selection"):
+        names = dict(zip(("omega", "phi", "kappa"), ("pitch", "roll", "yaw"), strict=True))
+        results[key] += [
+            row | {"angle": names[row["angle"]], "frame": "camera"} for row in area[key]
+        ]
+    results["verdict"]["corrected_angles"] = ["pitch"]
+    results["selection"] = [row for row in results["selection"] if row["frame"] == "camera"]
+    results["selection"][0]["form"] = "constant"
+    said = plain(verdict.paragraph(results))
+    size = results["regression"][0]["constant_rad"] * 1e3
+    assert f"pitch (constant of {size:.1f} mrad" in said
+    assert "roll and yaw stayed as delivered" in said
+
+
+def test_verdict_of_strips_that_differ_points_to_the_camera_frame(area):
+    results = copy.deepcopy(area)
+    for row in results["regression"]:
+        row |= {"p_value": 0.6, "strip_effect_sigma_rad": 0.02, "white_noise_sigma_rad": 2e-5}
+    assert "--frame auto --rules strict" in verdict.paragraph(results)
+    results["settings"]["frame_setting"] = "auto"
+    assert "differs from strip to strip" in verdict.paragraph(results)
+    assert "--frame auto" not in verdict.paragraph(results)
+
+
+def test_verdict_says_what_a_poor_correction_leaves_in_the_angles(area):
+    results = copy.deepcopy(area)
+    results["verdict"]["corrected_px"] = 4.0
+    said = plain(verdict.paragraph(results))
+    sigma = [round(row["sigma_rad"] * 1e6) for row in area["regression"] if row["scope"] == "block"]
+    assert re.search(rf"What is left in the angles is {sigma[0] // 10}\d µrad in omega", said)
+    assert "scatter from image to image about the lines" in said
+
+
+def test_a_long_block_is_turned_and_its_arrow_says_so(area):
+    drawn = figures.draw(area)["plan"]
+    assert "N →" not in drawn.svg
+    results = copy.deepcopy(area)
+    for row in results["images"]:
+        row["y_m"] *= 8.0
+        row["footprint"] = [[x, 8.0 * y] for x, y in row["footprint"]]
+    turned = figures.draw(results)["plan"]
+    assert "N →" in turned.svg
+    assert "north to the right" in turned.caption
+
+
+def test_a_turned_plan_is_a_rotation_of_the_ground_not_a_mirror_image():
+    view = PlanView(west=100.0, east=200.0, south=0.0, north=1000.0, turned=True)
+    east_north = [(110.0, 20.0), (190.0, 20.0), (190.0, 900.0)]
+    ground, paper = np.array(east_north), view.on_paper(east_north)
+    sides = [np.diff(corners, axis=0) for corners in (ground, paper)]
+    assert np.linalg.det(sides[0]) == pytest.approx(np.linalg.det(sides[1]))
+    assert paper[0].tolist() == [20.0, 90.0]
+
+
+def test_no_word_of_a_decision_is_broken_on_paper(pdf_file):
+    text = " ".join(pdf_pages(pdf_file))
+    row = re.search(r"omega +ground +block +yes +linear", text)
+    assert row, text
