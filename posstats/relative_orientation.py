@@ -15,14 +15,10 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity import (
-    CONVERGED,
-    NOT_CONVERGED,
-    RANK_DEFICIENT,
-    adjust_pairs,
-    base_frames,
-)
+from posstats.coplanarity import base_frames
 from posstats.errors import GeometryError
+from posstats.pair_adjustment import CONVERGED, NOT_CONVERGED, RANK_DEFICIENT, adjust_pairs
+from posstats.pair_blunders import weigh_pairs
 from posstats.rotation import angles_from_rotation, rotation_from_angles
 from posstats.stereo import MIN_MODEL_POINTS, StereoModels
 
@@ -247,22 +243,20 @@ def _adjusted(
     rms, code, iterations = np.full(p, np.nan), np.zeros(p, np.intp), np.zeros(p, np.intp)
     weights = start.weights.copy()
 
+    equations = (
+        models.left_vectors,
+        models.right_vectors,
+        weights,
+        models.pairs.offsets,
+        start.frames,
+        models.orientations.system == "phi-omega-kappa",
+        numbers,
+    )
+
     def adjust(pairs: _Ints) -> None:
-        adjust_pairs(
-            models.left_vectors,
-            models.right_vectors,
-            weights,
-            models.pairs.offsets,
-            start.frames,
-            models.orientations.system == "phi-omega-kappa",
-            numbers,
-            robust,
-            pairs,
-            state,
-            rms,
-            code,
-            iterations,
-        )
+        if robust:
+            weigh_pairs(*equations, pairs, state)
+        adjust_pairs(*equations, pairs, state, rms, code, iterations)
 
     _in_threads(adjust, np.flatnonzero(usable), models.pairs.n_points)
     status = start.status.copy()
