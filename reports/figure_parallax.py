@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -54,8 +55,8 @@ def by_model(results: Results) -> style.Drawing | None:
         if key == "corrected_px" and not chosen:
             continue  # the same as the POS: it would hide it
         y = [np.nan if model[key] is None else model[key] for model in ordered]
-        look = {"marker": marker, "ls": "", "ms": 2.6, "mew": 0.7, "color": colour, "mfc": "none"}
-        look = style.dots(colour, 2.8) if marker == "o" else look
+        look: dict[str, Any] = {"marker": marker, "ls": "", "ms": 2.6, "mew": 0.7, "mfc": "none"}
+        look = style.dots(colour, 2.8) if marker == "o" else look | {"color": colour}
         axis.plot(range(len(y)), y, label=label, **look)
     style.log_axis(axis, values)
     _strip_bands(axis, [model["strip"] for model in ordered])

@@ -94,7 +94,7 @@ def finish(figure: Figure, name: str, title: str, caption: str) -> Drawing:
     """
     stream = io.StringIO()
     # Figure.savefig would draw a figure of this layout twice.
-    FigureCanvasSVG(figure).print_svg(stream, metadata=_NO_METADATA)
+    FigureCanvasSVG(figure).print_svg(stream, metadata=_NO_METADATA)  # type: ignore[no-untyped-call]
     share = figure.get_figwidth() / WIDTH_IN
     return Drawing(name, title, caption, embeddable(stream.getvalue(), name, title, share))
 
