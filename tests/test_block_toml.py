@@ -130,6 +130,17 @@ def test_the_whole_file_is_understood() -> None:
         ('{ model = "radial", k1 = 0.1, k2 = 0.0 }', "0.1", "camera.distortion: found 0.1"),
         ("k1 = 0.1", "k1 = inf", "camera.distortion.k1: found inf, expected a finite number"),
         ("k1 = 0.1", f"k1 = {10**400}", "camera.distortion.k1: found 1000"),
+        ("k1 = 0.1", "k1 = 1e10", "found 10000000000.0, expected a finite number of at most 1e+09"),
+        (
+            "position_m = 0.05",
+            "position_m = 1e-10",
+            "accuracy.position_m: found 1e-10, expected a positive number of at least 1e-09",
+        ),
+        (
+            "position_m = 0.05",
+            "position_m = 1e200",
+            "accuracy.position_m: found 1e+200, expected a positive number of at most 1e+09",
+        ),
         (
             "mounting_deg = 0",
             "mounting_deg = 90",

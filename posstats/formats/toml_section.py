@@ -8,6 +8,9 @@ from difflib import get_close_matches
 from typing import Any, cast
 
 FILE = "block.toml"
+_LARGEST = 1e9
+_SMALLEST = 1e-9
+"""Sizes beyond these (m, px, degrees) are slips of the pen, and would overflow as weights."""
 
 
 @dataclass
@@ -67,16 +70,17 @@ class TomlSection:
         value = self.values.get(key)
         if value is None or _is_number(value):
             return None if value is None else float(value)
-        self.refuse(key, f"found {value!r}, expected a finite number")
+        self.refuse(key, f"found {value!r}, expected a finite number{_too_large(value)}")
         return None
 
     def positive(self, key: str, required: bool = False) -> float | None:
         """A finite number above zero, None if absent."""
         value = self.values.get(key)
-        if (value is None and not required) or (_is_number(value) and value > 0):
+        if (value is None and not required) or (_is_number(value) and value >= _SMALLEST):
             return None if value is None else float(value)
         found = "nothing" if value is None else repr(value)
-        self.refuse(key, f"found {found}, expected a positive number")
+        too_small = f" of at least {_SMALLEST:g}" if _is_number(value) and value > 0 else ""
+        self.refuse(key, f"found {found}, expected a positive number{too_small}{_too_large(value)}")
         return None
 
     def numbers(self, key: str, count: int, default: tuple[float, ...]) -> tuple[float, ...]:
@@ -93,10 +97,12 @@ class TomlSection:
 def _is_number(value: object) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number too large for a float
-        return False
+    return abs(value) <= _LARGEST  # false for NaN
+
+
+def _too_large(value: object) -> str:
+    is_large = isinstance(value, int | float) and _LARGEST < abs(value) < math.inf
+    return f" of at most {_LARGEST:g}" if is_large else ""
 
 
 def line_of_section(text: str, name: str) -> str:
