@@ -15,18 +15,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity import base_frames, y_parallax_derivatives
-from posstats.coplanarity_normals import (
-    Observed,
-    PointRays,
-    accumulate_normals,
-    precision,
-    refer_to_measurements,
-)
+from posstats.coplanarity import base_frames
+from posstats.coplanarity_linearised import linearised
+from posstats.coplanarity_normals import Observed, PointRays, accumulate_normals, precision
 from posstats.coplanarity_pairs import PointPairs
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.least_squares import factorised, propagated
-from posstats.rotation import AngleSystem, rotation_derivatives, rotation_from_angles
+from posstats.rotation import AngleSystem
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -103,42 +98,6 @@ class AdjustedBlock:
     sigma_px: float
     rejected: NDArray[np.bool_]
     n_iterations: int
-
-
-def linearised(
-    pairs: PointPairs,
-    unknowns: _Floats,
-    image_noise: _Floats,
-    frames: _Floats,
-    system: AngleSystem,
-) -> Observed:
-    """Y-parallaxes and derivatives at `unknowns` (n, 6) and at image points freed of noise.
-
-    q is that of the measured image points to first order in `image_noise` (m, 2), the derivatives
-    are those at the points without it (the rigorous Gauss-Helmert form): derivatives that share
-    the noise of q would bias what only the positions determine, such as the tilt of the block.
-    The parallax is measured in `frames` (p, 3, 3), base_from_ground, which stay those of the
-    POS bases: so the derivatives are exact, also where q is not yet zero.
-    """
-    vectors = pairs.ray_vectors.copy()
-    vectors[:, :2] -= image_noise
-    rotation = rotation_from_angles(unknowns[:, :3], system)
-    derivative = rotation_derivatives(unknowns[:, :3], system)
-    base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
-    q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
-        vectors[pairs.left_ray],
-        vectors[pairs.right_ray],
-        pairs.offsets,
-        frames @ rotation[pairs.left],
-        frames @ rotation[pairs.right],
-        frames[:, None] @ derivative[pairs.left],
-        frames[:, None] @ derivative[pairs.right],
-        np.einsum("pij,pj->pi", frames, base),
-    )
-    variance = refer_to_measurements(
-        q, by_base, by_image, image_noise, pairs.left_ray, pairs.right_ray, pairs.offsets, frames
-    )
-    return Observed(q, by_left, by_right, by_base, by_image, variance)
 
 
 def adjust(

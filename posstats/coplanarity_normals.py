@@ -41,10 +41,8 @@ class Observed(NamedTuple):
     ----------
     q
         (N,).
-    by_left_angles, by_right_angles
-        (N, 3).
-    by_base
-        (N, 3), ground frame.
+    by_left_angles, by_right_angles, by_base
+        (N, 3), the base in the ground frame.
     by_image
         (N, 4) by x, y of the left and of the right image point: the rows of D.
     variance
@@ -75,35 +73,6 @@ def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
     """(N,) diagonal of L^-1 from d = diag(D D') (N,) and the robust weights (N,) in [0, 1]."""
     result: _Floats = robust_weight / (variance * (1.0 - robust_weight * (1.0 - RIDGE)))
     return result
-
-
-@kernel
-def refer_to_measurements(
-    q: _Floats,
-    by_base: _Floats,
-    by_image: _Floats,
-    image_noise: _Floats,
-    left_ray: _Ints,
-    right_ray: _Ints,
-    offsets: _Ints,
-    frames: _Floats,
-) -> _Floats:
-    """Carry q (N,) from image points freed of noise to the measured ones, in place.
-
-    `by_base` (N, 3) is turned from the base frames, `frames` (p, 3, 3) base_from_ground, into the
-    ground frame, in place. `image_noise` (m, 2) belongs to the rays. Returns diag(D D') (N,).
-    """
-    variance = np.empty(len(q))
-    for pair in range(len(offsets) - 1):
-        frame = frames[pair]
-        for k in range(offsets[pair], offsets[pair + 1]):
-            left, right, d = image_noise[left_ray[k]], image_noise[right_ray[k]], by_image[k]
-            q[k] += d[0] * left[0] + d[1] * left[1] + d[2] * right[0] + d[3] * right[1]
-            variance[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
-            x, y, z = by_base[k]
-            for axis in range(3):
-                by_base[k, axis] = x * frame[0, axis] + y * frame[1, axis] + z * frame[2, axis]
-    return variance
 
 
 @inner_kernel
@@ -265,8 +234,8 @@ def _plus(c: _Six, f: float, w: _Six) -> _Six:
 def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
     """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
 
-    rows: (n, width) leading part, width a multiple of 6. Two rows of a block at a time are summed
-    in registers: twice as fast as plain loops.
+    rows: (n, width) leading part. Two rows of a block at a time are summed in registers: twice as
+    fast as plain loops.
     """
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for first in range(0, width, 6):
@@ -328,10 +297,8 @@ def accumulate_normals(
 
     Parameters
     ----------
-    observed
-        Of all pairs.
-    pair_precision
-        (N,) from `precision`.
+    observed, pair_precision
+        Of all pairs; the second (N,) from `precision`.
     points
         The points to add; those of the same images are best neighbours.
     normals, right_side

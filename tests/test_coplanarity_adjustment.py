@@ -8,7 +8,8 @@ from small_blocks import Layout, observed_block, true_block
 
 from posstats import coplanarity_adjustment
 from posstats.coplanarity import base_frames
-from posstats.coplanarity_adjustment import Priors, adjust, linearised
+from posstats.coplanarity_adjustment import Priors, adjust
+from posstats.coplanarity_linearised import linearised
 from posstats.coplanarity_normals import RIDGE, PointRays, accumulate_normals, precision
 from posstats.coplanarity_pairs import point_pairs
 from posstats.errors import ConvergenceError, GeometryError

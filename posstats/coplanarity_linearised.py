@@ -1,0 +1,84 @@
+"""Y-parallaxes of a block linearised in orientations and positions, free of the points' noise.
+
+The condition is f(x, l - e) = 0 in unknowns x and measured image points l of noise e. Its
+derivatives J and D are taken at l - e (rigorous Gauss-Helmert form). Taken at l they would hold
+the noise of q, which is D e to first order: J(l) = J + e dJ/dl, so that the gradient J'Wq has the
+expectation sigma^2 tr(D'W dJ/dl), not zero. It grows with the number of points, and what
+opposes it in a direction without parallax, such as the tilt of the block, are only the priors.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.compiled import kernel
+from posstats.coplanarity import y_parallax_derivatives
+from posstats.coplanarity_normals import Observed
+from posstats.coplanarity_pairs import PointPairs
+from posstats.rotation import AngleSystem, rotation_derivatives, rotation_from_angles
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+
+@kernel
+def refer_to_measurements(
+    q: _Floats,
+    by_base: _Floats,
+    by_image: _Floats,
+    image_noise: _Floats,
+    left_ray: _Ints,
+    right_ray: _Ints,
+    offsets: _Ints,
+    frames: _Floats,
+) -> _Floats:
+    """Carry q (N,) from image points freed of noise to the measured ones, in place.
+
+    `by_base` (N, 3) is turned from the base frames, `frames` (p, 3, 3) base_from_ground, into the
+    ground frame, in place. `image_noise` (m, 2) belongs to the rays. Returns diag(D D') (N,).
+    """
+    variance = np.empty(len(q))
+    for pair in range(len(offsets) - 1):
+        frame = frames[pair]
+        for k in range(offsets[pair], offsets[pair + 1]):
+            left, right, d = image_noise[left_ray[k]], image_noise[right_ray[k]], by_image[k]
+            q[k] += d[0] * left[0] + d[1] * left[1] + d[2] * right[0] + d[3] * right[1]
+            variance[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
+            x, y, z = by_base[k]
+            for axis in range(3):
+                by_base[k, axis] = x * frame[0, axis] + y * frame[1, axis] + z * frame[2, axis]
+    return variance
+
+
+def linearised(
+    pairs: PointPairs,
+    unknowns: _Floats,
+    image_noise: _Floats,
+    frames: _Floats,
+    system: AngleSystem,
+) -> Observed:
+    """Y-parallaxes and derivatives at `unknowns` (n, 6) and at image points freed of noise.
+
+    q is that of the measured image points to first order in `image_noise` (m, 2), the derivatives
+    are those at the points without it. The parallax is measured in `frames` (p, 3, 3),
+    base_from_ground, which stay those of the POS bases: so the derivatives are exact, also where
+    q is not yet zero.
+    """
+    vectors = pairs.ray_vectors.copy()
+    vectors[:, :2] -= image_noise
+    rotation = rotation_from_angles(unknowns[:, :3], system)
+    derivative = rotation_derivatives(unknowns[:, :3], system)
+    base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
+    q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
+        vectors[pairs.left_ray],
+        vectors[pairs.right_ray],
+        pairs.offsets,
+        frames @ rotation[pairs.left],
+        frames @ rotation[pairs.right],
+        frames[:, None] @ derivative[pairs.left],
+        frames[:, None] @ derivative[pairs.right],
+        np.einsum("pij,pj->pi", frames, base),
+    )
+    variance = refer_to_measurements(
+        q, by_base, by_image, image_noise, pairs.left_ray, pairs.right_ray, pairs.offsets, frames
+    )
+    return Observed(q, by_left, by_right, by_base, by_image, variance)
