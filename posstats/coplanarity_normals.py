@@ -234,8 +234,7 @@ def _plus(c: _Six, f: float, w: _Six) -> _Six:
 def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
     """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
 
-    rows: (n, width) leading part. Two rows of a block at a time are summed in registers: twice as
-    fast as plain loops.
+    rows: (n, width) leading part. Two rows of a block at a time are summed in registers.
     """
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for first in range(0, width, 6):
@@ -267,10 +266,10 @@ def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
 @inner_kernel
 def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
     """Whether there is such a point, and exactly these images see it."""
-    if point == points.first_ray.shape[0] or points.n_rays[point] != images.shape[0]:
+    if point == points.first_ray.shape[0]:
         return False
-    first = points.first_ray[point]
-    return np.array_equal(points.ray_image[first : first + images.shape[0]], images)
+    first, n = points.first_ray[point], points.n_rays[point]
+    return np.array_equal(points.ray_image[first : first + n], images)
 
 
 @inner_kernel
@@ -312,8 +311,7 @@ def accumulate_normals(
 
     Returns
     -------
-    square_sum, noise_trace
-        q'Wq and tr(W D D') (0 where `noise_normals` is not wanted).
+    q'Wq, and tr(W D D') (0 where `noise_normals` is not wanted).
     """
     with_noise = noise_normals.shape[0] > 0
     most = points.n_rays.max()
