@@ -20,8 +20,9 @@ CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
 
 _MAX_ITERATIONS = 100
 _LAST_STEP_PX = 1e-8  # RMS change of q; of the angles about 1e-12 rad
-_LAST_DECREASE = 1e-14  # share of the sum of squares, for large residuals
+_LAST_DECREASE = 1e-12  # share of the sum of squares, for large residuals
 _ROUNDING_PX = 1e-10  # of q, at most; a step need not lower the sum of squares by less
+_FIRST_DAMPING, _LAST_DAMPING = 10.0, 1e-3  # of the smallest pivot
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e10
 _POOR_GAIN = 0.25  # share of the expected decrease
 # Smallest pivot of normals scaled to a unit diagonal that determines the elements (below it,
@@ -69,18 +70,18 @@ def least_squares(pair: Pair, state: _Floats, last_step_px: float) -> tuple[_Flo
 def _next_damping(damping: float, growth: float, gain: float, pivot: float) -> tuple[float, float]:
     """Damping and its growth after a step with a share `gain` of the expected decrease.
 
-    Nielsen (1999, IMM-REP-1999-05). Damping begins at the smallest pivot, where it shortens the
+    Nielsen (1999, IMM-REP-1999-05). Damping begins near the smallest pivot, where it shortens the
     step of the worst determined elements alone, and ends far below it.
     """
     if gain > 0.0:
         growth = 2.0
         damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
-        damping = damping if damping > 0.1 * pivot else 0.0
+        damping = damping if damping > _LAST_DAMPING * pivot else 0.0
     else:
         damping *= growth
         growth *= 2.0
     if not gain > _POOR_GAIN:
-        damping = max(damping, pivot, _LEAST_DAMPING)
+        damping = max(damping, _FIRST_DAMPING * pivot, _LEAST_DAMPING)
     return damping, growth
 
 

