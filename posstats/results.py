@@ -165,19 +165,19 @@ def _verdict(analysis: Analysis) -> Row:
 
 
 def _cause(analysis: Analysis) -> Row:
-    """The angle that keeps the parallax when it is held, and its share of what angles cause.
+    """The angle that keeps the parallax when it is held, and its share among the three.
 
-    An angle is named when holding it alone keeps more than half of what holding all three
-    keeps, and that is more than relative orientation leaves anyway.
+    An angle is named when holding it keeps more parallax than holding either other angle and
+    both together, and holding all three keeps more than relative orientation leaves anyway.
     """
     least = _mean_px(analysis, analysis.dependent)
     kept = {name: _mean_px(analysis, each) - least for name, each in analysis.fixed.items()}
-    total = kept.pop("angles")
+    all_held = kept.pop("angles")
     worst = max(kept, key=lambda angle: kept[angle])
-    named = total > least and kept[worst] > 0.5 * total
+    named = all_held > least and kept[worst] > 0.5 * sum(kept.values())
     return {
         "cause": worst if named else None,
-        "cause_share": kept[worst] / total if named else None,
+        "cause_share": kept[worst] / sum(kept.values()) if named else None,
     }
 
 

@@ -148,6 +148,11 @@ def test_millimetres_are_x_right_y_up_from_the_principal_point(folder) -> None:
     assert np.allclose(read_block(folder).tie_points.xy_px, before.tie_points.xy_px, atol=1e-9)
 
 
+def test_control_characters_in_ids_are_refused(folder) -> None:
+    set_cell(folder, "orientations.csv", 1, "strip", "a\x1b[31m")
+    refused(folder, "orientations.csv:3, strip", "without control characters")
+
+
 @pytest.mark.parametrize(
     "distortion",
     [

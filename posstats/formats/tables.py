@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_CONTROL_CHARACTERS = r"[\x00-\x08\x0B\x0C\x0E-\x1F\x7F]"  # no XML or HTML can hold them
 _SHOWN_TEXT = 60
 _HEADER_CHARACTERS = 1_000_000
 _OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -80,6 +81,12 @@ class Table:
         values = pc.fill_null(values, "")
         empty = np.flatnonzero(_as_numpy(pc.or_(pc.equal(values, ""), pc.utf8_is_space(values))))
         findings += [f"{self.place(row, column)}: found nothing, expected an id" for row in empty]
+        unprintable = _as_numpy(pc.match_substring_regex(values, _CONTROL_CHARACTERS))
+        findings += [
+            f"{self.place(row, column)}: found {values[row].as_py()!r}, expected an id without "
+            "control characters"
+            for row in np.flatnonzero(unprintable)
+        ]
         return values
 
     def text(self, column: str) -> list[str]:
