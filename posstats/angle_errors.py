@@ -156,7 +156,10 @@ def coplanarity_errors(
     long = long_bases(pos, image_pairs)
     pairs = point_pairs(block, image_pairs.subset(long))
     if len(pairs.left) == 0:
-        raise GeometryError("no pair of images has common tie points: angle errors need them")
+        raise GeometryError(
+            "angle errors need tie points: no pair of images has any in common and a base longer "
+            f"than {SHORTEST_BASE:g} of its standard deviations"
+        )
     priors = Priors(
         angles_rad=pos.angles_rad,
         position_m=pos.position_m,

@@ -19,7 +19,7 @@ from posstats.coplanarity import base_frames
 from posstats.errors import GeometryError
 from posstats.pair_adjustment import CONVERGED, NOT_CONVERGED, RANK_DEFICIENT, adjust_pairs
 from posstats.pair_blunders import weigh_pairs
-from posstats.rotation import angles_from_rotation, rotation_from_angles
+from posstats.rotation import AngleSystem, angles_from_rotation, rotation_from_angles
 from posstats.stereo import MIN_MODEL_POINTS, StereoModels
 
 _Floats = NDArray[np.float64]
@@ -47,6 +47,8 @@ _STATUS = {
     NOT_CONVERGED: "not converged",
     RANK_DEFICIENT: "degenerate: the points do not determine the elements",
 }
+_LARGEST_TURN_RAD = float(np.radians(60.0))
+_TOO_FAR = "degenerate: the images turn by more than 60 degrees"
 _MIN_BASE_M = 1e-6
 _MIN_HORIZONTAL_SHARE = 1e-6
 _POINTS_PER_THREAD = 10_000
@@ -276,6 +278,14 @@ def _in_threads(adjust: Callable[[_Ints], None], pairs: _Ints, n_points: _Ints) 
         list(pool.map(adjust, np.split(pairs, cuts)))
 
 
+def _turned_rad(start: _Start, turn: _Floats, system: AngleSystem) -> _Floats:
+    """(p,) the larger of the angles by which the two images were turned from the start."""
+    given = rotation_from_angles(start.angles_rad, system)
+    cosine = 0.5 * (np.einsum("pkij,pkij->pk", given, turn) - 1.0)
+    turned: _Floats = np.arccos(np.clip(cosine, -1.0, 1.0)).max(axis=1)
+    return turned
+
+
 def _result(
     models: StereoModels,
     start: _Start,
@@ -291,9 +301,12 @@ def _result(
     status[np.equal(status, "ok").astype(bool) & (n_kept < MIN_MODEL_POINTS)] = (
         f"fewer than {MIN_MODEL_POINTS} points after rejection"
     )
-    converged = np.equal(status, "ok").astype(bool)
-    angles = np.where(converged[:, None, None], state[:, :6].reshape(-1, 2, 3), np.nan)
+    angles = state[:, :6].reshape(-1, 2, 3)
     turn = rotation_from_angles(angles, models.orientations.system)
+    far = _turned_rad(start, turn, models.orientations.system) > _LARGEST_TURN_RAD
+    status[np.equal(status, "ok").astype(bool) & far] = _TOO_FAR
+    converged = np.equal(status, "ok").astype(bool)
+    turn = np.where(converged[:, None, None, None], turn, np.nan)
     ground_from_base = np.swapaxes(start.base_from_ground, 1, 2)
     rotation = ground_from_base[:, None] @ start.frames @ turn
     relative = np.column_stack([np.ones(len(models)), state[:, 6:]])

@@ -225,6 +225,8 @@ def _limits(results: Results) -> Part:
         "another strip fixes it. Rotations about the other two axes are tied to the direction of "
         "the base between GNSS positions."
     )
+    if blind := _less_known_than_stated(results):
+        text += f" {blind}"
     table = statistics_tables.observability(results)
     warnings = tuple(str(warning) for warning in results.get("warnings") or ())
     told = (
@@ -236,6 +238,23 @@ def _limits(results: Results) -> Part:
         "limits",
         "What the data cannot tell, and warnings",
         (Paragraph(text), *_filled([table]), *told),
+    )
+
+
+def _less_known_than_stated(results: Results) -> str:
+    """Angles that the tie points give less well than the POS claims to know them."""
+    stated = (results.get("settings") or {}).get("angle_rad")
+    known = {
+        row["angle"]: row["median_sigma_rad"]
+        for row in rows(results, "angle_error_summary", frame="ground")
+        if stated and row["median_sigma_rad"] and row["median_sigma_rad"] > stated
+    }
+    if not known:
+        return ""
+    shown = fmt.joined(f"{name} only to {fmt.angle(sigma)}" for name, sigma in known.items())
+    return (
+        f"Here they give {shown} (median standard deviation of an image), less well than the POS "
+        f"is stated to know its angles, {fmt.angle(stated)}: smaller errors cannot be seen."
     )
 
 

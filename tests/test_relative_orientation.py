@@ -512,6 +512,16 @@ def test_plain_least_squares_of_a_drone_model_gives_up_on_a_least_sixty_degrees_
     assert rms_px < 0.31
 
 
+def test_a_solution_that_turns_the_images_too_far_is_no_solution():
+    # The same model, robust: the iteration reaches that far least.
+    models = stereo_models(read_block(shared_path("data", "seneca")))
+    result = orient(models, robust=True)
+    lost = np.flatnonzero(~result.converged)
+    assert list(models.pairs.n_points[lost]) == [8]
+    assert result.status[lost[0]] == "degenerate: the images turn by more than 60 degrees"
+    assert np.isnan(result.y_parallax_rms_px[lost[0]])
+
+
 def test_independent_elements_are_the_default_ones():
     models = noisy_models()
     np.testing.assert_array_equal(

@@ -406,6 +406,16 @@ def test_verdict_says_what_a_poor_correction_leaves_in_the_angles(area):
     assert "scatter from image to image about the lines" in said
 
 
+def test_angles_known_less_well_than_the_pos_claims_are_named(area):
+    results = copy.deepcopy(area)
+    results["settings"]["angle_rad"] = 1e-4
+    assert "less well than the POS" not in html.render(document.build(results))
+    for row in results["angle_error_summary"]:
+        row["median_sigma_rad"] = 3e-4 if row["angle"] == "omega" else 1e-5
+    page = html.render(document.build(results))
+    assert "Here they give omega only to 300 µrad (0.0172°)" in plain(page)
+
+
 def test_a_long_block_is_turned_and_its_arrow_says_so(area):
     drawn = figures.draw(area)["plan"]
     assert "N →" not in drawn.svg
