@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_scenario import small_block
 
 from posstats.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
 from posstats.correction import corrected, predicted_errors
@@ -11,33 +12,15 @@ from posstats.parallax import model_rms_px
 from posstats.regression import regress
 from posstats.selection import decide, load_rules
 from posstats.stereo import stereo_models
-from posstats.synthetic import load_scenario, simulate
 from posstats.validation import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax
 
 
 def block(n_strips=3, **errors):
-    scenario = {
-        "block": {"name": "small"},
-        "camera": {
-            "width_px": 13824,
-            "height_px": 7680,
-            "pixel_size_mm": 0.012,
-            "principal_distance_mm": 120.0,
-        },
-        "flight": {
-            "scale_denominator": 78000,
-            "forward_overlap": 0.6,
-            "side_overlap": 0.34,
-            "n_strips": n_strips,
-            "images_per_strip": 8,
-            "headings_deg": [0, 180],
-            "speed_m_per_s": 200.0,
-            "turn_s": 300.0,
-        },
-        "tie_points": {"per_model": 20},
-        "errors": {"image_px": 0.2, **errors},
-    }
-    return simulate(load_scenario(scenario), seed=3)
+    """A block whose only errors are those given, and those of the image points."""
+    none = {name: {} for name in ("omega", "phi", "kappa", "position")}
+    return small_block(
+        3, flight={"n_strips": n_strips}, tie_points={"per_model": 20}, errors=none | errors
+    )
 
 
 def true_errors(simulated) -> AngleErrors:
