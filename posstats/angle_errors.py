@@ -157,8 +157,8 @@ def coplanarity_errors(
     pairs = point_pairs(block, image_pairs.subset(long))
     if len(pairs.left) == 0:
         raise GeometryError(
-            "angle errors need tie points: no pair of images has any in common and a base longer "
-            f"than {SHORTEST_BASE:g} of its standard deviations"
+            "no pair of images has common tie points and a base longer than "
+            f"{SHORTEST_BASE:g} of its standard deviations: angle errors need both"
         )
     priors = Priors(
         angles_rad=pos.angles_rad,
