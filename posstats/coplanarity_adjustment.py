@@ -144,7 +144,8 @@ def adjust(
         weighting = weighting.advanced(decrement)
     raise ConvergenceError(
         f"the coplanarity adjustment did not settle in {MAX_ITERATIONS} steps (y-parallax still"
-        f" {weighting.scale_px:.3g} px): check the angles, their system and the strips"
+        f" {weighting.scale_px:.3g} px): check the angles, their system and the strips (a strip"
+        " without a neighbour, flown with a coarse POS, leaves its roll open)"
     )
 
 
