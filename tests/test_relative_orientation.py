@@ -8,6 +8,7 @@ import poselib
 import pytest
 from helpers import shared_path
 from scipy.optimize import least_squares
+from small_scenario import small_block
 from stereo_scene import (
     PRINCIPAL_DISTANCE_PX,
     models_of,
@@ -486,7 +487,8 @@ def test_six_points_in_a_curved_valley_reach_the_least_that_scipy_finds(start):
     change_rad, rms_px = least_of_scipy(models, 1)
     result = orient(models)
     assert result.n_points[1] == 6
-    assert result.y_parallax_rms_px[1] == pytest.approx(rms_px, rel=1e-7)
+    # In the valley scipy stops up to 3e-6 short of the least, by its release; we must not.
+    assert rms_px * (1.0 - 1e-5) < result.y_parallax_rms_px[1] < rms_px * (1.0 + 1e-7)
     assert np.abs(change_rad).max() > np.radians(0.5)
 
 
@@ -513,13 +515,23 @@ def test_plain_least_squares_of_a_drone_model_gives_up_on_a_least_sixty_degrees_
 
 
 def test_a_solution_that_turns_the_images_too_far_is_no_solution():
-    # The same model, robust: the iteration reaches that far least.
-    models = stereo_models(read_block(shared_path("data", "seneca")))
-    result = orient(models, robust=True)
-    lost = np.flatnonzero(~result.converged)
-    assert list(models.pairs.n_points[lost]) == [8]
-    assert result.status[lost[0]] == "degenerate: the images turn by more than 60 degrees"
-    assert np.isnan(result.y_parallax_rms_px[lost[0]])
+    # Kappa of all images off by 59 degrees: solved by turning back; noise and tilts decide
+    # whether that is more than 60 degrees, and the status says which.
+    block = small_block()
+    models = stereo_models(block)
+    angles = block.adjusted.angles_rad + np.array([0.0, 0.0, np.radians(59.0)])
+    result = orient(models.with_orientations(block.adjusted.with_angles(angles)))
+    start = rotation_from_angles(angles, block.adjusted.system)
+    solved = result.converged
+    for images, turned in (
+        (models.pairs.left, result.ground_from_left),
+        (models.pairs.right, result.ground_from_right),
+    ):
+        change = np.swapaxes(start[images], 1, 2) @ turned
+        assert np.linalg.norm(vector_from_rotation(change[solved]), axis=1).max() < np.radians(60.0)
+    too_far = result.status == "degenerate: the images turn by more than 60 degrees"
+    assert too_far.any()
+    assert np.isnan(result.y_parallax_rms_px[too_far]).all()
 
 
 def test_independent_elements_are_the_default_ones():
