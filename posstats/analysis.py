@@ -75,7 +75,8 @@ class FrameAnalysis:
     Attributes
     ----------
     out_of_sample
-        Parallax on unseen images with the decided corrections; None unless frames are compared.
+        Parallax on unseen images with every angle's decided form, or a constant where nothing is
+        corrected; None unless frames are compared.
     """
 
     errors: AngleErrors
@@ -165,10 +166,9 @@ def analyse(
             "no two consecutive images of a strip have common tie points: there is no stereo model"
         )
     report("relative orientation", 0.05)
-    robust = settings.robust
-    independent = orient(models, "independent", robust=robust)
-    dependent = orient(models, "dependent", robust=robust)
-    fixed = {str(name): orient(models, name, robust=robust) for name in FIXED}
+    independent = orient(models, "independent", robust=settings.robust)
+    dependent = orient(models, "dependent", independent=independent)
+    fixed = {str(name): orient(models, name, independent=independent) for name in FIXED}
     errors = _angle_errors(block, models, settings, report)
     report("regression", 0.8)
     frames = _frames(models, errors, rules, settings)

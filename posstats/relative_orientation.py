@@ -105,7 +105,11 @@ class _Start:
 
 
 def orient(
-    models: StereoModels, method: Method = "independent", *, robust: bool = False
+    models: StereoModels,
+    method: Method = "independent",
+    *,
+    robust: bool = False,
+    independent: RelativeOrientation | None = None,
 ) -> RelativeOrientation:
     """Relative orientation of every model, starting from its orientations.
 
@@ -124,6 +128,10 @@ def orient(
         residual of each model). They are found in the independent solution; the other methods
         use its weights, so that all are compared over the same points.
 
+    independent
+        The independent solution of the same models, if it is already known: the other methods
+        start from it, and `robust` then has no say.
+
     Raises
     ------
     GeometryError
@@ -133,7 +141,8 @@ def orient(
         raise GeometryError(
             f"unknown relative orientation {method!r}: choose one of {', '.join(get_args(Method))}"
         )
-    independent = _adjusted(models, _base_frame_start(models), INDEPENDENT, robust)
+    if independent is None:
+        independent = _adjusted(models, _base_frame_start(models), INDEPENDENT, robust)
     if method == "independent":
         return independent
     free = [element for element in DEPENDENT if element not in _HELD[method]]

@@ -102,6 +102,17 @@ def test_the_least_rms_is_that_of_scipy():
 
 
 @pytest.mark.parametrize("robust", [False, True])
+@pytest.mark.parametrize("method", ["independent", "dependent", "omega"])
+def test_a_known_independent_solution_saves_work_and_changes_nothing(method, robust):
+    models = noisy_models(n_models=3)
+    known = orient(models, robust=robust)
+    fresh = orient(models, method, robust=robust)
+    reused = orient(models, method, independent=known)
+    np.testing.assert_array_equal(reused.y_parallax_rms_px, fresh.y_parallax_rms_px)
+    np.testing.assert_array_equal(reused.weights, fresh.weights)
+
+
+@pytest.mark.parametrize("robust", [False, True])
 def test_independent_and_dependent_leave_equal_residuals(robust):
     models = noisy_models(cameras=(0, 1))
     independent, dependent = (orient(models, m, robust=robust) for m in METHODS[:2])
