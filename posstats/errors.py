@@ -1,6 +1,6 @@
 """Errors raised by posstats; all derive from `PosstatsError`."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 SHOWN_FINDINGS = 20
 
@@ -30,6 +30,26 @@ class BlockFormatError(PosstatsError):
 
 class GeometryError(PosstatsError):
     """A geometric problem without a solution (degenerate model, unsolvable elements)."""
+
+
+class UndeterminedError(GeometryError):
+    """Unknowns that the observations do not determine.
+
+    Parameters
+    ----------
+    images
+        Indices of the images whose orientation is open.
+    common
+        Indices of the common unknowns that are open.
+    """
+
+    def __init__(self, images: Iterable[int], common: Iterable[int]) -> None:
+        self.images = tuple(int(i) for i in images)
+        self.common = tuple(int(i) for i in common)
+        super().__init__(
+            f"the normal equations are singular: {len(self.images)} images and"
+            f" {len(self.common)} common parameters are not determined"
+        )
 
 
 class ConvergenceError(PosstatsError):
