@@ -20,16 +20,16 @@ E = D'L^-1 D, H = D'L^-1 J and g = D'L^-1 q (2n rows each) and the Cholesky fact
 Points seen by the same images share their matrices, which enter those of the block only once.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from posstats.compiled import inner_kernel, kernel
+from posstats.kernel_algebra import add_products
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
-_Six = Any  # a tuple of six numbers, which stays in registers
 
 RIDGE = 0.05
 
@@ -216,41 +216,6 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 
 
 @inner_kernel
-def _six(row: _Floats, first: int) -> _Six:
-    return (
-        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
-    )  # fmt: skip
-
-
-@inner_kernel
-def _plus(c: _Six, f: float, w: _Six) -> _Six:
-    return (
-        c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
-        c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
-    )  # fmt: skip
-
-
-@inner_kernel
-def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
-    """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
-
-    rows: (n, width) leading part. Two rows of a block at a time are summed in registers.
-    """
-    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    for first in range(0, width, 6):
-        for second in range(first, width, 6):
-            for i in range(first, first + 6, 2):
-                upper, lower = zero, zero
-                for r in range(n):
-                    row = _six(rows[r], second)
-                    upper = _plus(upper, rows[r, i], row)
-                    lower = _plus(lower, rows[r, i + 1], row)
-                for j in range(6):
-                    matrix[i, second + j] += sign * upper[j]
-                    matrix[i + 1, second + j] += sign * lower[j]
-
-
-@inner_kernel
 def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
     """Take (C^-1 H)'(C^-1 g) from the right side; |C^-1 g|^2 is returned."""
     width = right_side.shape[0]
@@ -333,14 +298,14 @@ def accumulate_normals(
             )
             _factorise(noise, 2 * n)
             _solve_lower(noise, 2 * n, shared, 6 * n + 1)
-            _add_products(shared, 2 * n, 6 * n, local, -1.0)
+            add_products(shared, 2 * n, 6 * n, local, -1.0)
             square_sum -= _subtract_projected(shared, right)
             first = points.first_ray[point]
             _back_substitute(noise, 2 * n, shared[:, 6 * n], image_noise[first : first + n])
             if with_noise:
                 noise_trace += 2 * n - _inverse_square_sum(noise, 2 * n, work)
                 _solve_upper(noise, 2 * n, shared, 6 * n)
-                _add_products(shared, 2 * n, 6 * n, local_noise, 1.0)
+                add_products(shared, 2 * n, 6 * n, local_noise, 1.0)
             point += 1
         _scatter(local, images, normals)
         if with_noise:

@@ -14,6 +14,7 @@ from posstats.compiled import inner_kernel, summing_kernel
 _Floats = NDArray[np.float64]
 Vector = Any  # three numbers: a row of an array, or a tuple
 Matrix = Any  # three such rows
+_Six = Any  # a tuple of six numbers, which stays in registers
 
 # Smallest pivot of a matrix scaled to a unit diagonal that can be solved.
 _SINGULAR_PIVOT = 1e-14
@@ -86,3 +87,38 @@ def _substitute(factor: _Floats, scale: _Floats, gradient: _Floats, step: _Float
         step[i] /= factor[i, i]
     for i in range(n):
         step[i] /= scale[i]
+
+
+@inner_kernel
+def _six(row: _Floats, first: int) -> _Six:
+    return (
+        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
+    )  # fmt: skip
+
+
+@inner_kernel
+def _plus(c: _Six, f: float, w: _Six) -> _Six:
+    return (
+        c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
+        c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
+    )  # fmt: skip
+
+
+@inner_kernel
+def add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
+    """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
+
+    rows: (n, width) leading part. Two rows of a block at a time are summed in registers.
+    """
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for first in range(0, width, 6):
+        for second in range(first, width, 6):
+            for i in range(first, first + 6, 2):
+                upper, lower = zero, zero
+                for r in range(n):
+                    row = _six(rows[r], second)
+                    upper = _plus(upper, rows[r, i], row)
+                    lower = _plus(lower, rows[r, i + 1], row)
+                for j in range(6):
+                    matrix[i, second + j] += sign * upper[j]
+                    matrix[i + 1, second + j] += sign * lower[j]
