@@ -1,0 +1,471 @@
+"""Normal equations of a bundle adjustment, reduced by the ground points; compiled.
+
+A ray of weight w has the residual v = computed - measured and the derivatives A by the unknowns
+of its image and the camera, B by its point. With the sums over the rays of one point
+
+    N = sum w B'B + P,    n = sum w B'v + P (X - X0),    K = sum w B'A     (P, X0: its control)
+
+and N = L L', the point's part of the normal equations of all other unknowns is
+
+    sum w A'A - T'T,    sum w A'v - T't        T = L^-1 K,  t = L^-1 n,
+
+and its own step is -N^-1 (n + K s) for a step s of the others (Schur's complement; Brown's
+reduced normal equations). One pass over the rays makes derivatives and sums: nothing of the size
+of the number of rays is stored.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.bundle_groups import PointGroups
+from posstats.bundle_rays import Cameras, Images, observe
+from posstats.compiled import inner_kernel, kernel
+from posstats.kernel_algebra import add_products
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+# Smallest pivot, of a point's normal equations scaled to a unit diagonal, that determines it.
+_SINGULAR_PIVOT = 1e-12
+_BATCH = 16  # points whose T are collected before they are multiplied
+
+
+class Measured(NamedTuple):
+    """m rays in the order of the groups.
+
+    Attributes
+    ----------
+    xy_px
+        (m, 2).
+    weight
+        (m,) 1/px2; 0 takes a ray out.
+    """
+
+    xy_px: _Floats
+    weight: _Floats
+
+
+class Ground(NamedTuple):
+    """p points in the order of the groups; g of them are observed (control).
+
+    Attributes
+    ----------
+    position_m
+        (p, 3) where they are assumed.
+    control
+        (p,) index into the following, -1: none.
+    control_m
+        (g, 3).
+    weight
+        (g, 3, 3) 1/m2, inverse covariances.
+    """
+
+    position_m: _Floats
+    control: _Ints
+    control_m: _Floats
+    weight: _Floats
+
+
+class Reduced(NamedTuple):
+    """Reduced normal equations of n images and k camera unknowns, added to by the kernel.
+
+    Attributes
+    ----------
+    blocks
+        (P, 6, 6) of the pairs of images; upper triangles of an image with itself.
+    border
+        (n, 6, k).
+    corner
+        (k, k), upper triangle.
+    images, common
+        (n, 6), (k,): gradient J'Wv.
+    """
+
+    blocks: _Floats
+    border: _Floats
+    corner: _Floats
+    images: _Floats
+    common: _Floats
+
+
+class Ray(NamedTuple):
+    """Room for the residual (2,) and derivatives (2, 6), (2, 3), (2, 11) of one ray."""
+
+    residual: _Floats
+    by_pose: _Floats
+    by_ground: _Floats
+    by_camera: _Floats
+
+
+@inner_kernel
+def new_ray() -> Ray:
+    """Room for one ray."""
+    return Ray(np.empty(2), np.empty((2, 6)), np.empty((2, 3)), np.empty((2, 11)))
+
+
+@inner_kernel
+def linearise(
+    ray: int,
+    ground: _Floats,
+    image: int,
+    measured: Measured,
+    images: Images,
+    cameras: Cameras,
+    out: Ray,
+) -> bool:
+    """Write a ray's residual and derivatives; false if its point is behind the camera."""
+    if not observe(
+        ground, image, images, cameras, out.residual, out.by_pose, out.by_ground, out.by_camera
+    ):
+        return False
+    out.residual[0] -= measured.xy_px[ray, 0]
+    out.residual[1] -= measured.xy_px[ray, 1]
+    return True
+
+
+@inner_kernel
+def add_to_point(
+    ray: Ray,
+    weight: float,
+    place: int,
+    n_images: int,
+    columns: _Ints,
+    normals: _Floats,
+    side: _Floats,
+    rows: _Floats,
+) -> None:
+    """Add a ray, of the point's image number `place`, to N, n and K (3, 6 n_images + k)."""
+    for axis in range(2):
+        for i in range(3):
+            scaled = weight * ray.by_ground[axis, i]
+            side[i] += scaled * ray.residual[axis]
+            for j in range(3):
+                normals[i, j] += scaled * ray.by_ground[axis, j]
+            for j in range(6):
+                rows[i, 6 * place + j] += scaled * ray.by_pose[axis, j]
+            for parameter in range(len(columns)):
+                if columns[parameter] >= 0:
+                    column = 6 * n_images + columns[parameter]
+                    rows[i, column] += scaled * ray.by_camera[axis, parameter]
+
+
+@inner_kernel
+def add_control(
+    point: int, ground: Ground, position: _Floats, normals: _Floats, side: _Floats
+) -> float:
+    """Add a point's control to N and n; its weighted square sum is returned."""
+    control, square_sum = ground.control[point], 0.0
+    if control < 0:
+        return 0.0
+    for i in range(3):
+        row = 0.0
+        for j in range(3):
+            weight = ground.weight[control, i, j]
+            normals[i, j] += weight
+            row += weight * (position[j] - ground.control_m[control, j])
+        side[i] += row
+        square_sum += row * (position[i] - ground.control_m[control, i])
+    return square_sum
+
+
+@inner_kernel
+def factorise_point(normals: _Floats) -> bool:
+    """Lower Cholesky factor (3, 3) in place; false if the point is not determined."""
+    a, b, c = normals[0, 0], normals[1, 1], normals[2, 2]
+    if not (a > 0.0 and b > 0.0 and c > 0.0):
+        return False
+    normals[0, 0] = np.sqrt(a)
+    normals[1, 0] /= normals[0, 0]
+    normals[2, 0] /= normals[0, 0]
+    second = b - normals[1, 0] ** 2
+    if not second > _SINGULAR_PIVOT * b:
+        return False
+    normals[1, 1] = np.sqrt(second)
+    normals[2, 1] = (normals[2, 1] - normals[2, 0] * normals[1, 0]) / normals[1, 1]
+    third = c - normals[2, 0] ** 2 - normals[2, 1] ** 2
+    if not third > _SINGULAR_PIVOT * c:
+        return False
+    normals[2, 2] = np.sqrt(third)
+    return True
+
+
+@inner_kernel
+def solve_lower(lower: _Floats, rows: _Floats) -> None:
+    """L^-1 rows (3, k), in place."""
+    for j in range(rows.shape[1]):
+        x = rows[0, j] / lower[0, 0]
+        y = (rows[1, j] - lower[1, 0] * x) / lower[1, 1]
+        rows[0, j], rows[1, j] = x, y
+        rows[2, j] = (rows[2, j] - lower[2, 0] * x - lower[2, 1] * y) / lower[2, 2]
+
+
+@inner_kernel
+def _add_direct(
+    ray: Ray, weight: float, place: int, n_images: int, columns: _Ints, local: _Floats
+) -> float:
+    """Add w A'A and w A'v of a ray to a group's matrix (upper triangle); w v'v is returned."""
+    last = local.shape[0] - 1
+    square_sum = 0.0
+    for axis in range(2):
+        residual = ray.residual[axis]
+        square_sum += weight * residual * residual
+        for i in range(6):
+            scaled = weight * ray.by_pose[axis, i]
+            for j in range(i, 6):
+                local[6 * place + i, 6 * place + j] += scaled * ray.by_pose[axis, j]
+            local[6 * place + i, last] += scaled * residual
+            for parameter in range(len(columns)):
+                if columns[parameter] >= 0:
+                    column = 6 * n_images + columns[parameter]
+                    local[6 * place + i, column] += scaled * ray.by_camera[axis, parameter]
+        for parameter in range(len(columns)):
+            if columns[parameter] >= 0:
+                row = 6 * n_images + columns[parameter]
+                scaled = weight * ray.by_camera[axis, parameter]
+                local[row, last] += scaled * residual
+                for other in range(len(columns)):
+                    if columns[other] >= columns[parameter]:
+                        column = 6 * n_images + columns[other]
+                        local[row, column] += scaled * ray.by_camera[axis, other]
+    return square_sum
+
+
+@inner_kernel
+def _add_point(
+    point: int,
+    groups: PointGroups,
+    measured: Measured,
+    ground: Ground,
+    images: Images,
+    cameras: Cameras,
+    damping: float,
+    ray: Ray,
+    normals: _Floats,
+    side: _Floats,
+    rows: _Floats,
+    local: _Floats,
+) -> tuple[bool, float, float]:
+    """Add a point to its group's matrix, all but T'T; write [T t] to rows (3, width).
+
+    Returns whether it is determined, and its weighted square sums of image and control.
+    """
+    first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
+    normals[:], side[:], rows[:] = 0.0, 0.0, 0.0
+    position = ground.position_m[point]
+    square_sum = 0.0
+    for place in range(n):
+        k, i = first + place, groups.ray_image[first + place]
+        weight, columns = measured.weight[k], cameras.column[images.camera[i]]
+        if weight == 0.0:
+            continue
+        if not linearise(k, position, i, measured, images, cameras, ray):
+            return False, np.inf, 0.0
+        add_to_point(ray, weight, place, n, columns, normals, side, rows)
+        square_sum += _add_direct(ray, weight, place, n, columns, local)
+    control = add_control(point, ground, position, normals, side)
+    if normals[0, 0] == 0.0:  # all of its rays are taken out
+        return True, 0.0, 0.0
+    for i in range(3):
+        normals[i, i] *= 1.0 + damping
+        rows[i, rows.shape[1] - 1] = side[i]
+    determined = factorise_point(normals)
+    if determined:
+        solve_lower(normals, rows)
+    return determined, square_sum, control
+
+
+@inner_kernel
+def _scatter(local: _Floats, members: _Ints, pairs: _Ints, n_common: int, out: Reduced) -> None:
+    """Add a group's matrix (upper triangle) to the block's."""
+    n, last, at = len(members), local.shape[0] - 1, 0
+    for i in range(n):
+        for j in range(i, n):
+            block = out.blocks[pairs[at]]
+            at += 1
+            for a in range(6):
+                for b in range(a if i == j else 0, 6):
+                    block[a, b] += local[6 * i + a, 6 * j + b]
+        for a in range(6):
+            out.images[members[i], a] += local[6 * i + a, last]
+            for b in range(n_common):
+                out.border[members[i], a, b] += local[6 * i + a, 6 * n + b]
+    for a in range(n_common):
+        out.common[a] += local[6 * n + a, last]
+        for b in range(a, n_common):
+            out.corner[a, b] += local[6 * n + a, 6 * n + b]
+
+
+@kernel
+def accumulate(
+    first_group: int,
+    last_group: int,
+    groups: PointGroups,
+    measured: Measured,
+    ground: Ground,
+    images: Images,
+    cameras: Cameras,
+    damping: float,
+    determined: NDArray[np.bool_],
+    out: Reduced,
+) -> tuple[float, float, float]:
+    """Add the points of groups first_group ... last_group - 1 to the reduced normal equations.
+
+    Parameters
+    ----------
+    groups, measured, ground, images, cameras
+        See there; `cameras.column` counts the columns of `out.border`.
+    damping
+        Levenberg's, relative to the diagonal of every point's N.
+    determined
+        (p,) written: whether N is regular. Where it is not, the sums are of no use.
+    out
+        Added to.
+
+    Returns
+    -------
+    Weighted square sums v'Wv of image coordinates and of control, and n'N^-1 n of the points:
+    what their steps alone would take away. Infinite where a point is behind a camera.
+    """
+    n_common = out.common.shape[0]
+    most = 0
+    for group in range(first_group, last_group):
+        point = groups.offsets[group]
+        most = max(most, groups.first_ray[point + 1] - groups.first_ray[point])
+    widest = 6 * most + n_common + 6
+    local_store, rows_store = np.empty(widest**2), np.empty(3 * _BATCH * widest)
+    ray, normals, side = new_ray(), np.empty((3, 3)), np.empty(3)
+    image_sum = control_sum = gain = 0.0
+    for group in range(first_group, last_group):
+        point = groups.offsets[group]
+        first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
+        width = 6 * ((6 * n + n_common) // 6 + 1)
+        local = local_store[: width * width].reshape(width, width)
+        rows = rows_store[: 3 * _BATCH * width].reshape(3 * _BATCH, width)
+        local[:] = 0.0
+        filled = 0
+        for each in range(point, groups.offsets[group + 1]):
+            determined[each], image_part, control_part = _add_point(
+                each, groups, measured, ground, images, cameras, damping,
+                ray, normals, side, rows[filled : filled + 3], local,
+            )  # fmt: skip
+            image_sum += image_part
+            control_sum += control_part
+            filled += 3
+            if filled == len(rows) or each + 1 == groups.offsets[group + 1]:
+                for i in range(filled):
+                    gain += rows[i, width - 1] ** 2
+                add_products(rows, filled, width, local, -1.0)
+                filled = 0
+        pairs = groups.pair[groups.pair_offsets[group] : groups.pair_offsets[group + 1]]
+        _scatter(local, groups.ray_image[first : first + n], pairs, n_common, out)
+    return image_sum, control_sum, gain
+
+
+class Step(NamedTuple):
+    """A step of n images (n, 6) and k camera unknowns (k,), and where it leads."""
+
+    images: _Floats
+    common: _Floats
+    new_images: Images
+    new_cameras: Cameras
+
+
+@inner_kernel
+def _moved(
+    point: int,
+    groups: PointGroups,
+    measured: Measured,
+    ground: Ground,
+    images: Images,
+    cameras: Cameras,
+    step: Step,
+    damping: float,
+    ray: Ray,
+    normals: _Floats,
+    side: _Floats,
+    rows: _Floats,
+    out: _Floats,
+) -> None:
+    """Write a point's position after the step, -N^-1 (n + K s) from its old one."""
+    first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
+    normals[:], side[:], rows[:] = 0.0, 0.0, 0.0
+    position = ground.position_m[point]
+    out[:] = position
+    for place in range(n):
+        k, i = first + place, groups.ray_image[first + place]
+        if measured.weight[k] > 0.0 and linearise(k, position, i, measured, images, cameras, ray):
+            columns = cameras.column[images.camera[i]]
+            add_to_point(ray, measured.weight[k], place, n, columns, normals, side, rows)
+    add_control(point, ground, position, normals, side)
+    for i in range(3):
+        normals[i, i] *= 1.0 + damping
+        for place in range(n):
+            for j in range(6):
+                side[i] += rows[i, 6 * place + j] * step.images[groups.ray_image[first + place], j]
+        for j in range(len(step.common)):
+            side[i] += rows[i, 6 * n + j] * step.common[j]
+    if factorise_point(normals):
+        x = side[0] / normals[0, 0]
+        y = (side[1] - normals[1, 0] * x) / normals[1, 1]
+        z = (side[2] - normals[2, 0] * x - normals[2, 1] * y) / normals[2, 2] ** 2
+        y = (y - normals[2, 1] * z) / normals[1, 1]
+        out[0] -= (x - normals[1, 0] * y - normals[2, 0] * z) / normals[0, 0]
+        out[1] -= y
+        out[2] -= z
+
+
+@kernel
+def move_points(
+    first_group: int,
+    last_group: int,
+    groups: PointGroups,
+    measured: Measured,
+    ground: Ground,
+    images: Images,
+    cameras: Cameras,
+    step: Step,
+    damping: float,
+    new_position_m: _Floats,
+) -> tuple[float, float]:
+    """Move the points of some groups as the step of the other unknowns asks for.
+
+    Parameters are those of `accumulate`, and
+
+    step
+        Of the reduced normal equations.
+    new_position_m
+        (p, 3) written.
+
+    Returns
+    -------
+    Weighted square sums v'Wv of image coordinates and of control after the step; infinite where
+    a point is behind a camera.
+    """
+    points = range(groups.offsets[first_group], groups.offsets[last_group])
+    most = 0
+    for point in points:
+        most = max(most, groups.first_ray[point + 1] - groups.first_ray[point])
+    rows = np.empty((3, 6 * most + len(step.common)))
+    ray, normals, side = new_ray(), np.empty((3, 3)), np.empty(3)
+    image_sum = control_sum = 0.0
+    for point in points:
+        position = new_position_m[point]
+        _moved(
+            point, groups, measured, ground, images, cameras, step, damping,
+            ray, normals, side, rows, position,
+        )  # fmt: skip
+        for k in range(groups.first_ray[point], groups.first_ray[point + 1]):
+            if measured.weight[k] > 0.0:
+                if linearise(
+                    k, position, groups.ray_image[k], measured,
+                    step.new_images, step.new_cameras, ray,
+                ):  # fmt: skip
+                    squares = ray.residual[0] ** 2 + ray.residual[1] ** 2
+                    image_sum += measured.weight[k] * squares
+                else:
+                    image_sum = np.inf
+        normals[:], side[:] = 0.0, 0.0
+        control_sum += add_control(point, ground, position, normals, side)
+    return image_sum, control_sum
