@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.bundle_groups import PointGroups
-from posstats.bundle_rays import Cameras, Images, observe
+from posstats.bundle_rays import Cameras, Images, Ray, new_ray, observe
 from posstats.compiled import inner_kernel, kernel
 from posstats.kernel_algebra import add_products
 
@@ -90,35 +90,19 @@ class Reduced(NamedTuple):
     common: _Floats
 
 
-class Ray(NamedTuple):
-    """Room for the residual (2,) and derivatives (2, 6), (2, 3), (2, 11) of one ray."""
-
-    residual: _Floats
-    by_pose: _Floats
-    by_ground: _Floats
-    by_camera: _Floats
-
-
-@inner_kernel
-def new_ray() -> Ray:
-    """Room for one ray."""
-    return Ray(np.empty(2), np.empty((2, 6)), np.empty((2, 3)), np.empty((2, 11)))
-
-
 @inner_kernel
 def linearise(
     ray: int,
-    ground: _Floats,
+    point: int,
     image: int,
     measured: Measured,
+    position_m: _Floats,
     images: Images,
     cameras: Cameras,
     out: Ray,
 ) -> bool:
     """Write a ray's residual and derivatives; false if its point is behind the camera."""
-    if not observe(
-        ground, image, images, cameras, out.residual, out.by_pose, out.by_ground, out.by_camera
-    ):
+    if not observe(position_m, point, image, images, cameras, out):
         return False
     out.residual[0] -= measured.xy_px[ray, 0]
     out.residual[1] -= measured.xy_px[ray, 1]
@@ -131,7 +115,8 @@ def add_to_point(
     weight: float,
     place: int,
     n_images: int,
-    columns: _Ints,
+    camera: int,
+    column: _Ints,
     normals: _Floats,
     side: _Floats,
     rows: _Floats,
@@ -145,16 +130,14 @@ def add_to_point(
                 normals[i, j] += scaled * ray.by_ground[axis, j]
             for j in range(6):
                 rows[i, 6 * place + j] += scaled * ray.by_pose[axis, j]
-            for parameter in range(len(columns)):
-                if columns[parameter] >= 0:
-                    column = 6 * n_images + columns[parameter]
-                    rows[i, column] += scaled * ray.by_camera[axis, parameter]
+            for k in range(ray.by_camera.shape[1]):
+                if column[camera, k] >= 0:
+                    at = 6 * n_images + column[camera, k]
+                    rows[i, at] += scaled * ray.by_camera[axis, k]
 
 
 @inner_kernel
-def add_control(
-    point: int, ground: Ground, position: _Floats, normals: _Floats, side: _Floats
-) -> float:
+def add_control(point: int, ground: Ground, normals: _Floats, side: _Floats) -> float:
     """Add a point's control to N and n; its weighted square sum is returned."""
     control, square_sum = ground.control[point], 0.0
     if control < 0:
@@ -164,9 +147,9 @@ def add_control(
         for j in range(3):
             weight = ground.weight[control, i, j]
             normals[i, j] += weight
-            row += weight * (position[j] - ground.control_m[control, j])
+            row += weight * (ground.position_m[point, j] - ground.control_m[control, j])
         side[i] += row
-        square_sum += row * (position[i] - ground.control_m[control, i])
+        square_sum += row * (ground.position_m[point, i] - ground.control_m[control, i])
     return square_sum
 
 
@@ -202,33 +185,48 @@ def solve_lower(lower: _Floats, rows: _Floats) -> None:
 
 
 @inner_kernel
+def solve_upper(lower: _Floats, rows: _Floats) -> None:
+    """L'^-1 rows (3, k), in place."""
+    for j in range(rows.shape[1]):
+        z = rows[2, j] / lower[2, 2]
+        y = (rows[1, j] - lower[2, 1] * z) / lower[1, 1]
+        rows[2, j], rows[1, j] = z, y
+        rows[0, j] = (rows[0, j] - lower[1, 0] * y - lower[2, 0] * z) / lower[0, 0]
+
+
+@inner_kernel
 def _add_direct(
-    ray: Ray, weight: float, place: int, n_images: int, columns: _Ints, local: _Floats
+    ray: Ray,
+    weight: float,
+    place: int,
+    n_images: int,
+    camera: int,
+    column: _Ints,
+    local: _Floats,
 ) -> float:
     """Add w A'A and w A'v of a ray to a group's matrix (upper triangle); w v'v is returned."""
-    last = local.shape[0] - 1
-    square_sum = 0.0
+    last, square_sum = local.shape[0] - 1, 0.0
     for axis in range(2):
         residual = ray.residual[axis]
         square_sum += weight * residual * residual
         for i in range(6):
-            scaled = weight * ray.by_pose[axis, i]
+            row, scaled = 6 * place + i, weight * ray.by_pose[axis, i]
+            local[row, last] += scaled * residual
             for j in range(i, 6):
-                local[6 * place + i, 6 * place + j] += scaled * ray.by_pose[axis, j]
-            local[6 * place + i, last] += scaled * residual
-            for parameter in range(len(columns)):
-                if columns[parameter] >= 0:
-                    column = 6 * n_images + columns[parameter]
-                    local[6 * place + i, column] += scaled * ray.by_camera[axis, parameter]
-        for parameter in range(len(columns)):
-            if columns[parameter] >= 0:
-                row = 6 * n_images + columns[parameter]
-                scaled = weight * ray.by_camera[axis, parameter]
+                local[row, 6 * place + j] += scaled * ray.by_pose[axis, j]
+            for k in range(ray.by_camera.shape[1]):
+                if column[camera, k] >= 0:
+                    at = 6 * n_images + column[camera, k]
+                    local[row, at] += scaled * ray.by_camera[axis, k]
+        for k in range(ray.by_camera.shape[1]):
+            if column[camera, k] >= 0:
+                row = 6 * n_images + column[camera, k]
+                scaled = weight * ray.by_camera[axis, k]
                 local[row, last] += scaled * residual
-                for other in range(len(columns)):
-                    if columns[other] >= columns[parameter]:
-                        column = 6 * n_images + columns[other]
-                        local[row, column] += scaled * ray.by_camera[axis, other]
+                for j in range(ray.by_camera.shape[1]):
+                    if column[camera, j] >= column[camera, k]:
+                        at = 6 * n_images + column[camera, j]
+                        local[row, at] += scaled * ray.by_camera[axis, j]
     return square_sum
 
 
@@ -253,18 +251,17 @@ def _add_point(
     """
     first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
     normals[:], side[:], rows[:] = 0.0, 0.0, 0.0
-    position = ground.position_m[point]
-    square_sum = 0.0
+    column, square_sum = cameras.column, 0.0
     for place in range(n):
         k, i = first + place, groups.ray_image[first + place]
-        weight, columns = measured.weight[k], cameras.column[images.camera[i]]
+        weight, camera = measured.weight[k], images.camera[i]
         if weight == 0.0:
             continue
-        if not linearise(k, position, i, measured, images, cameras, ray):
+        if not linearise(k, point, i, measured, ground.position_m, images, cameras, ray):
             return False, np.inf, 0.0
-        add_to_point(ray, weight, place, n, columns, normals, side, rows)
-        square_sum += _add_direct(ray, weight, place, n, columns, local)
-    control = add_control(point, ground, position, normals, side)
+        add_to_point(ray, weight, place, n, camera, column, normals, side, rows)
+        square_sum += _add_direct(ray, weight, place, n, camera, column, local)
+    control = add_control(point, ground, normals, side)
     if normals[0, 0] == 0.0:  # all of its rays are taken out
         return True, 0.0, 0.0
     for i in range(3):
@@ -335,7 +332,7 @@ def accumulate(
         most = max(most, groups.first_ray[point + 1] - groups.first_ray[point])
     widest = 6 * most + n_common + 6
     local_store, rows_store = np.empty(widest**2), np.empty(3 * _BATCH * widest)
-    ray, normals, side = new_ray(), np.empty((3, 3)), np.empty(3)
+    ray, normals, side = new_ray(n_common), np.empty((3, 3)), np.empty(3)
     image_sum = control_sum = gain = 0.0
     for group in range(first_group, last_group):
         point = groups.offsets[group]
@@ -363,57 +360,30 @@ def accumulate(
     return image_sum, control_sum, gain
 
 
-class Step(NamedTuple):
-    """A step of n images (n, 6) and k camera unknowns (k,), and where it leads."""
-
-    images: _Floats
-    common: _Floats
-    new_images: Images
-    new_cameras: Cameras
-
-
 @inner_kernel
-def _moved(
+def normals_of_point(
     point: int,
     groups: PointGroups,
     measured: Measured,
     ground: Ground,
     images: Images,
     cameras: Cameras,
-    step: Step,
-    damping: float,
     ray: Ray,
     normals: _Floats,
     side: _Floats,
     rows: _Floats,
-    out: _Floats,
 ) -> None:
-    """Write a point's position after the step, -N^-1 (n + K s) from its old one."""
+    """Write N, n and K (3, 6 n + k) of a point."""
     first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
     normals[:], side[:], rows[:] = 0.0, 0.0, 0.0
-    position = ground.position_m[point]
-    out[:] = position
     for place in range(n):
         k, i = first + place, groups.ray_image[first + place]
-        if measured.weight[k] > 0.0 and linearise(k, position, i, measured, images, cameras, ray):
-            columns = cameras.column[images.camera[i]]
-            add_to_point(ray, measured.weight[k], place, n, columns, normals, side, rows)
-    add_control(point, ground, position, normals, side)
-    for i in range(3):
-        normals[i, i] *= 1.0 + damping
-        for place in range(n):
-            for j in range(6):
-                side[i] += rows[i, 6 * place + j] * step.images[groups.ray_image[first + place], j]
-        for j in range(len(step.common)):
-            side[i] += rows[i, 6 * n + j] * step.common[j]
-    if factorise_point(normals):
-        x = side[0] / normals[0, 0]
-        y = (side[1] - normals[1, 0] * x) / normals[1, 1]
-        z = (side[2] - normals[2, 0] * x - normals[2, 1] * y) / normals[2, 2] ** 2
-        y = (y - normals[2, 1] * z) / normals[1, 1]
-        out[0] -= (x - normals[1, 0] * y - normals[2, 0] * z) / normals[0, 0]
-        out[1] -= y
-        out[2] -= z
+        weight, camera = measured.weight[k], images.camera[i]
+        if weight > 0.0 and linearise(
+            k, point, i, measured, ground.position_m, images, cameras, ray
+        ):
+            add_to_point(ray, weight, place, n, camera, cameras.column, normals, side, rows)
+    add_control(point, ground, normals, side)
 
 
 @kernel
@@ -425,47 +395,44 @@ def move_points(
     ground: Ground,
     images: Images,
     cameras: Cameras,
-    step: Step,
+    image_step: _Floats,
+    common_step: _Floats,
     damping: float,
     new_position_m: _Floats,
-) -> tuple[float, float]:
-    """Move the points of some groups as the step of the other unknowns asks for.
+) -> None:
+    """Move the points of some groups as a step of the other unknowns asks for.
 
     Parameters are those of `accumulate`, and
 
-    step
-        Of the reduced normal equations.
+    image_step, common_step
+        (n, 6), (k,) solution of the reduced normal equations.
     new_position_m
-        (p, 3) written.
-
-    Returns
-    -------
-    Weighted square sums v'Wv of image coordinates and of control after the step; infinite where
-    a point is behind a camera.
+        (p, 3) written; a point that is not determined stays.
     """
     points = range(groups.offsets[first_group], groups.offsets[last_group])
     most = 0
     for point in points:
         most = max(most, groups.first_ray[point + 1] - groups.first_ray[point])
-    rows = np.empty((3, 6 * most + len(step.common)))
-    ray, normals, side = new_ray(), np.empty((3, 3)), np.empty(3)
-    image_sum = control_sum = 0.0
+    ray, normals, side = new_ray(len(common_step)), np.empty((3, 3)), np.empty((3, 1))
+    store = np.empty((3, 6 * most + len(common_step)))
     for point in points:
-        position = new_position_m[point]
-        _moved(
-            point, groups, measured, ground, images, cameras, step, damping,
-            ray, normals, side, rows, position,
-        )  # fmt: skip
-        for k in range(groups.first_ray[point], groups.first_ray[point + 1]):
-            if measured.weight[k] > 0.0:
-                if linearise(
-                    k, position, groups.ray_image[k], measured,
-                    step.new_images, step.new_cameras, ray,
-                ):  # fmt: skip
-                    squares = ray.residual[0] ** 2 + ray.residual[1] ** 2
-                    image_sum += measured.weight[k] * squares
-                else:
-                    image_sum = np.inf
-        normals[:], side[:] = 0.0, 0.0
-        control_sum += add_control(point, ground, position, normals, side)
-    return image_sum, control_sum
+        first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
+        rows = store[:, : 6 * n + len(common_step)]
+        normals_of_point(
+            point, groups, measured, ground, images, cameras, ray, normals, side[:, 0], rows
+        )
+        for i in range(3):
+            normals[i, i] *= 1.0 + damping
+            for place in range(n):
+                for j in range(6):
+                    moved = image_step[groups.ray_image[first + place], j]
+                    side[i, 0] += rows[i, 6 * place + j] * moved
+            for j in range(len(common_step)):
+                side[i, 0] += rows[i, 6 * n + j] * common_step[j]
+        if factorise_point(normals):
+            solve_lower(normals, side)
+            solve_upper(normals, side)
+        else:
+            side[:] = 0.0
+        for i in range(3):
+            new_position_m[point, i] = ground.position_m[point, i] - side[i, 0]

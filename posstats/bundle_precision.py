@@ -18,15 +18,13 @@ from posstats.bundle_groups import PointGroups
 from posstats.bundle_normals import (
     Ground,
     Measured,
-    Ray,
-    add_control,
-    add_to_point,
     factorise_point,
     linearise,
-    new_ray,
+    normals_of_point,
     solve_lower,
+    solve_upper,
 )
-from posstats.bundle_rays import Cameras, Images
+from posstats.bundle_rays import Cameras, Images, Ray, new_ray
 from posstats.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
@@ -92,28 +90,36 @@ def _gather(members: _Ints, pairs: _Ints, cofactors: Cofactors, local: _Floats) 
 
 @inner_kernel
 def _by_unknowns(
-    ray: Ray, axis: int, place: int, n_images: int, columns: _Ints, row: _Floats, used: _Ints
+    ray: Ray,
+    axis: int,
+    place: int,
+    n_images: int,
+    camera: int,
+    column: _Ints,
+    row: _Floats,
+    used: _Ints,
 ) -> int:
     """Write the elements of a row of A that are not 0 and their columns; their number."""
     for i in range(6):
         row[i], used[i] = ray.by_pose[axis, i], 6 * place + i
     count = 6
-    for parameter in range(len(columns)):
-        if columns[parameter] >= 0:
-            row[count] = ray.by_camera[axis, parameter]
-            used[count] = 6 * n_images + columns[parameter]
+    for k in range(ray.by_camera.shape[1]):
+        if column[camera, k] >= 0:
+            row[count], used[count] = ray.by_camera[axis, k], 6 * n_images + column[camera, k]
             count += 1
     return count
 
 
 @inner_kernel
 def _coordinate_variance(
-    by_ground: _Floats,
+    ray: Ray,
+    axis: int,
     count: int,
     row: _Floats,
     used: _Ints,
     local: _Floats,
     shared: _Floats,
+    point: int,
     covariance: _Floats,
 ) -> float:
     """Variance of an adjusted image coordinate; shared: U C (3, 6 n + k), covariance: cov X."""
@@ -123,22 +129,13 @@ def _coordinate_variance(
         for j in range(count):
             across += row[j] * local[used[i], used[j]]
         for j in range(3):
-            across -= 2.0 * by_ground[j] * shared[j, used[i]]
+            across -= 2.0 * ray.by_ground[axis, j] * shared[j, used[i]]
         variance += row[i] * across
     for i in range(3):
         for j in range(3):
-            variance += by_ground[i] * by_ground[j] * covariance[i, j]
+            scale = ray.by_ground[axis, i] * ray.by_ground[axis, j]
+            variance += scale * covariance[point, i, j]
     return variance
-
-
-@inner_kernel
-def _solve_upper(lower: _Floats, rows: _Floats) -> None:
-    """L'^-1 rows (3, k), in place."""
-    for j in range(rows.shape[1]):
-        z = rows[2, j] / lower[2, 2]
-        y = (rows[1, j] - lower[2, 1] * z) / lower[1, 1]
-        rows[2, j], rows[1, j] = z, y
-        rows[0, j] = (rows[0, j] - lower[1, 0] * y - lower[2, 0] * z) / lower[0, 0]
 
 
 @inner_kernel
@@ -151,9 +148,9 @@ def _propagate(
     for i in range(3):
         out[i, i] = 1.0
     solve_lower(lower, out)
-    _solve_upper(lower, out)
+    solve_upper(lower, out)
     solve_lower(lower, rows)
-    _solve_upper(lower, rows)
+    solve_upper(lower, rows)
     shared[:] = 0.0
     for i in range(3):
         for a in range(width):
@@ -186,14 +183,8 @@ def _point(
 ) -> None:
     """Write the results of one point and its rays."""
     first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
-    position, covariance = ground.position_m[point], out.covariance_m2[point]
-    normals[:], side[:], rows[:] = 0.0, 0.0, 0.0
-    for place in range(n):
-        k, i = first + place, groups.ray_image[first + place]
-        if measured.weight[k] > 0.0 and linearise(k, position, i, measured, images, cameras, ray):
-            columns = cameras.column[images.camera[i]]
-            add_to_point(ray, measured.weight[k], place, n, columns, normals, side, rows)
-    add_control(point, ground, position, normals, side)
+    covariance = out.covariance_m2[point]
+    normals_of_point(point, groups, measured, ground, images, cameras, ray, normals, side, rows)
     if not factorise_point(normals):
         covariance[:] = np.nan
         out.residual_px[first : first + n] = np.nan
@@ -202,17 +193,20 @@ def _point(
     _propagate(normals, rows, local, shared, covariance)
     for place in range(n):
         k, i = first + place, groups.ray_image[first + place]
-        out.redundancy[k], out.residual_px[k] = np.nan, np.nan
-        if not linearise(k, position, i, measured, images, cameras, ray):
+        for axis in range(2):
+            out.redundancy[k, axis] = out.residual_px[k, axis] = np.nan
+        if not linearise(k, point, i, measured, ground.position_m, images, cameras, ray):
             continue
-        columns = cameras.column[images.camera[i]]
         for axis in range(2):
             out.residual_px[k, axis] = ray.residual[axis]
             if measured.weight[k] > 0.0:
-                count = _by_unknowns(ray, axis, place, n, columns, row, used)
-                out.redundancy[k, axis] = 1.0 - measured.weight[k] * _coordinate_variance(
-                    ray.by_ground[axis], count, row, used, local, shared, covariance
+                count = _by_unknowns(
+                    ray, axis, place, n, images.camera[i], cameras.column, row, used
                 )
+                variance = _coordinate_variance(
+                    ray, axis, count, row, used, local, shared, point, out.covariance_m2
+                )
+                out.redundancy[k, axis] = 1.0 - measured.weight[k] * variance
 
 
 @kernel
@@ -240,7 +234,7 @@ def point_precision(
     widest = 6 * most + n_common
     local_store = np.empty(widest**2)
     rows_store, shared_store = np.empty(3 * widest), np.empty(3 * widest)
-    ray, normals, side = new_ray(), np.empty((3, 3)), np.empty(3)
+    ray, normals, side = new_ray(n_common), np.empty((3, 3)), np.empty(3)
     used, row = np.empty(6 + n_common, dtype=np.intp), np.empty(6 + n_common)
     for group in range(first_group, last_group):
         point = groups.offsets[group]

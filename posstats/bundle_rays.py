@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.compiled import inner_kernel, kernel
-from posstats.kernel_algebra import cross
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -74,88 +73,112 @@ class Cameras(NamedTuple):
     column: _Ints
 
 
+class Ray(NamedTuple):
+    """Room for a ray: residual (2,), derivatives (2, 6), (2, 3) and (2, 11) or (2, 0)."""
+
+    residual: _Floats
+    by_pose: _Floats
+    by_ground: _Floats
+    by_camera: _Floats
+
+
+@inner_kernel
+def new_ray(n_common: int) -> Ray:
+    """Room for one ray; derivatives by the camera are wanted if there are common unknowns."""
+    n_camera = 11 if n_common > 0 else 0
+    return Ray(np.empty(2), np.empty((2, 6)), np.empty((2, 3)), np.empty((2, n_camera)))
+
+
+# Elements are addressed one by one below: a view of an array costs more than its numbers.
+
+
 @inner_kernel
 def observe(
-    ground: _Floats,
-    image: int,
-    images: Images,
-    cameras: Cameras,
-    xy: _Floats,
-    by_pose: _Floats,
-    by_ground: _Floats,
-    by_camera: _Floats,
+    ground_m: _Floats, point: int, image: int, images: Images, cameras: Cameras, out: Ray
 ) -> bool:
-    """Write the image point (2,) and its derivatives (2, 6), (2, 3), (2, 11).
+    """Write a ray's image point (as residual) and derivatives.
 
     False, and nothing is written, if the point is behind the camera.
     """
-    r, centre, camera = (
-        images.ground_from_image[image],
-        images.position_m[image],
-        images.camera[image],
-    )
-    d = (ground[0] - centre[0], ground[1] - centre[1], ground[2] - centre[2])
-    uz = r[0, 2] * d[0] + r[1, 2] * d[1] + r[2, 2] * d[2]
+    r, s, camera = images.ground_from_image, images.position_m, images.camera[image]
+    dx = ground_m[point, 0] - s[image, 0]
+    dy = ground_m[point, 1] - s[image, 1]
+    dz = ground_m[point, 2] - s[image, 2]
+    uz = r[image, 0, 2] * dx + r[image, 1, 2] * dy + r[image, 2, 2] * dz
     if not uz < 0.0:
         return False
-    a = -(r[0, 0] * d[0] + r[1, 0] * d[1] + r[2, 0] * d[2]) / uz
-    b = -(r[0, 1] * d[0] + r[1, 1] * d[1] + r[2, 1] * d[2]) / uz
-    gradient = _deformed(a, b, camera, cameras, xy, by_camera)
+    a = -(r[image, 0, 0] * dx + r[image, 1, 0] * dy + r[image, 2, 0] * dz) / uz
+    b = -(r[image, 0, 1] * dx + r[image, 1, 1] * dy + r[image, 2, 1] * dz) / uz
+    x, y, xa, xb, ya, yb = _deformed(a, b, camera, cameras)
+    out.residual[0], out.residual[1] = x, y
     for axis in range(2):
-        ga, gb = gradient[axis]
-        for j in range(3):
-            by_ground[axis, j] = -(ga * r[j, 0] + gb * r[j, 1] + (ga * a + gb * b) * r[j, 2]) / uz
-        turned = cross(by_ground[axis], d)
-        for j in range(3):
-            by_pose[axis, j] = turned[j]
-            by_pose[axis, 3 + j] = -by_ground[axis, j]
+        ga, gb = (xa, xb) if axis == 0 else (ya, yb)
+        ga, gb, gz = -ga / uz, -gb / uz, -(ga * a + gb * b) / uz
+        gx = ga * r[image, 0, 0] + gb * r[image, 0, 1] + gz * r[image, 0, 2]
+        gy = ga * r[image, 1, 0] + gb * r[image, 1, 1] + gz * r[image, 1, 2]
+        gz = ga * r[image, 2, 0] + gb * r[image, 2, 1] + gz * r[image, 2, 2]
+        out.by_ground[axis, 0], out.by_ground[axis, 1], out.by_ground[axis, 2] = gx, gy, gz
+        out.by_pose[axis, 0] = gy * dz - gz * dy
+        out.by_pose[axis, 1] = gz * dx - gx * dz
+        out.by_pose[axis, 2] = gx * dy - gy * dx
+        out.by_pose[axis, 3], out.by_pose[axis, 4], out.by_pose[axis, 5] = -gx, -gy, -gz
+    if out.by_camera.shape[1] > 0:
+        _derive_camera(a, b, camera, cameras, out)
     return True
 
 
 @inner_kernel
 def _deformed(
-    a: float, b: float, camera: int, cameras: Cameras, xy: _Floats, by_camera: _Floats
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Write the image point and its derivatives by the camera; those of x and y by (a, b)."""
-    dc, x0, y0, s1, s2, s3, k1, k2, k3, p1, p2 = cameras.value[camera]
-    c, mm = cameras.distance_px[camera] + dc, cameras.mm_per_px[camera]
+    a: float, b: float, camera: int, cameras: Cameras
+) -> tuple[float, float, float, float, float, float]:
+    """The image point x, y and its derivatives: x by a, x by b, y by a, y by b."""
+    v = cameras.value
+    c = cameras.distance_px[camera] + v[camera, 0]
+    s1, s2, s3 = v[camera, 3], v[camera, 4], v[camera, 5]
+    k1, k2, k3 = v[camera, 6], v[camera, 7], v[camera, 8]
+    p1, p2 = v[camera, 9], v[camera, 10]
     r2 = a * a + b * b
     radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
     growth = 2.0 * (k1 + r2 * (2.0 * k2 + 3.0 * k3 * r2))
-    u = a * radial - 2.0 * p1 * a * b + p2 * (3.0 * a * a + b * b)
-    v = b * radial - p1 * (a * a + 3.0 * b * b) + 2.0 * p2 * a * b
-    mixed = growth * a * b - 2.0 * p1 * a + 2.0 * p2 * b
-    ua = radial + growth * a * a - 2.0 * p1 * b + 6.0 * p2 * a
-    vb = radial + growth * b * b - 6.0 * p1 * b + 2.0 * p2 * a
-
-    # The scale-free Bauer terms: lengths in principal distances, s1 in their inverse squares.
-    t1 = s1 * (mm * c) ** 2
-    ring = t1 * r2 - s1 * cameras.radius_mm**2
-    ua += ring - s3 + 2.0 * t1 * a * a
-    vb += ring + s3 + 2.0 * t1 * b * b
-    across = mixed + 2.0 * t1 * a * b
-    xy[0] = c * (u + a * (ring - s3)) + x0
-    xy[1] = c * (v + b * (ring + s3) + s2 * a) + y0
-
-    ring_by_s1 = (mm * c) ** 2 * r2 - cameras.radius_mm**2
-    _write(by_camera, 0, u + a * (3.0 * t1 * r2 - s1 * cameras.radius_mm**2 - s3),
-           v + b * (3.0 * t1 * r2 - s1 * cameras.radius_mm**2 + s3) + s2 * a)  # fmt: skip
-    _write(by_camera, 1, 1.0, 0.0)
-    _write(by_camera, 2, 0.0, 1.0)
-    _write(by_camera, 3, c * a * ring_by_s1, c * b * ring_by_s1)
-    _write(by_camera, 4, 0.0, c * a)
-    _write(by_camera, 5, -c * a, c * b)
-    _write(by_camera, 6, c * a * r2, c * b * r2)
-    _write(by_camera, 7, c * a * r2**2, c * b * r2**2)
-    _write(by_camera, 8, c * a * r2**3, c * b * r2**3)
-    _write(by_camera, 9, -2.0 * c * a * b, -c * (a * a + 3.0 * b * b))
-    _write(by_camera, 10, c * (3.0 * a * a + b * b), 2.0 * c * a * b)
-    return (c * ua, c * across), (c * (across + s2), c * vb)
+    bent = s1 * (cameras.mm_per_px[camera] * c) ** 2
+    ring = bent * r2 - s1 * cameras.radius_mm**2
+    mixed = (growth + 2.0 * bent) * a * b - 2.0 * p1 * a + 2.0 * p2 * b
+    x = a * (radial + ring - s3) - 2.0 * p1 * a * b + p2 * (3.0 * a * a + b * b)
+    y = b * (radial + ring + s3) - p1 * (a * a + 3.0 * b * b) + 2.0 * p2 * a * b + s2 * a
+    xa = radial + ring - s3 + (growth + 2.0 * bent) * a * a - 2.0 * p1 * b + 6.0 * p2 * a
+    yb = radial + ring + s3 + (growth + 2.0 * bent) * b * b - 6.0 * p1 * b + 2.0 * p2 * a
+    return (
+        c * x + v[camera, 1], c * y + v[camera, 2],
+        c * xa, c * mixed, c * (mixed + s2), c * yb,
+    )  # fmt: skip
 
 
 @inner_kernel
-def _write(by_camera: _Floats, parameter: int, x: float, y: float) -> None:
-    by_camera[0, parameter], by_camera[1, parameter] = x, y
+def _derive_camera(a: float, b: float, camera: int, cameras: Cameras, out: Ray) -> None:
+    """Write the derivatives by `CAMERA_PARAMETERS`."""
+    x, y, _, _, _, _ = _deformed(a, b, camera, cameras)
+    v = cameras.value
+    c = cameras.distance_px[camera] + v[camera, 0]
+    r2 = a * a + b * b
+    length = (cameras.mm_per_px[camera] * c) ** 2 * r2
+    by_c = 2.0 * v[camera, 3] * length  # Bauer's rings grow with the image
+    ring = c * (length - cameras.radius_mm**2)
+    _write(out, 0, (x - v[camera, 1]) / c + a * by_c, (y - v[camera, 2]) / c + b * by_c)
+    _write(out, 1, 1.0, 0.0)
+    _write(out, 2, 0.0, 1.0)
+    _write(out, 3, a * ring, b * ring)
+    _write(out, 4, 0.0, c * a)
+    _write(out, 5, -c * a, c * b)
+    _write(out, 6, c * a * r2, c * b * r2)
+    _write(out, 7, c * a * r2**2, c * b * r2**2)
+    _write(out, 8, c * a * r2**3, c * b * r2**3)
+    _write(out, 9, -2.0 * c * a * b, -c * (a * a + 3.0 * b * b))
+    _write(out, 10, c * (3.0 * a * a + b * b), 2.0 * c * a * b)
+
+
+@inner_kernel
+def _write(out: Ray, parameter: int, x: float, y: float) -> None:
+    out.by_camera[0, parameter], out.by_camera[1, parameter] = x, y
 
 
 @kernel
@@ -188,8 +211,6 @@ def project_rays(
     xy, by_pose = np.full((m, 2), np.nan), np.full((m, 2, 6), np.nan)
     by_ground, by_camera = np.full((m, 2, 3), np.nan), np.full((m, 2, 11), np.nan)
     for k in range(m):
-        observe(
-            ground_m[point[k]], image[k], images, cameras,
-            xy[k], by_pose[k], by_ground[k], by_camera[k],
-        )  # fmt: skip
+        row = Ray(xy[k], by_pose[k], by_ground[k], by_camera[k])
+        observe(ground_m, point[k], image[k], images, cameras, row)
     return xy, by_pose, by_ground, by_camera
