@@ -68,6 +68,16 @@ class Ground(NamedTuple):
     weight: _Floats
 
 
+class Network(NamedTuple):
+    """Rays, points, images and cameras at one state of the unknowns."""
+
+    groups: PointGroups
+    measured: Measured
+    ground: Ground
+    images: Images
+    cameras: Cameras
+
+
 class Reduced(NamedTuple):
     """Reduced normal equations of n images and k camera unknowns, added to by the kernel.
 
@@ -298,11 +308,7 @@ def _scatter(local: _Floats, members: _Ints, pairs: _Ints, n_common: int, out: R
 def accumulate(
     first_group: int,
     last_group: int,
-    groups: PointGroups,
-    measured: Measured,
-    ground: Ground,
-    images: Images,
-    cameras: Cameras,
+    network: Network,
     damping: float,
     determined: NDArray[np.bool_],
     out: Reduced,
@@ -311,8 +317,8 @@ def accumulate(
 
     Parameters
     ----------
-    groups, measured, ground, images, cameras
-        See there; `cameras.column` counts the columns of `out.border`.
+    network
+        All rays and points; `cameras.column` counts the columns of `out.border`.
     damping
         Levenberg's, relative to the diagonal of every point's N.
     determined
@@ -325,6 +331,7 @@ def accumulate(
     Weighted square sums v'Wv of image coordinates and of control, and n'N^-1 n of the points:
     what their steps alone would take away. Infinite where a point is behind a camera.
     """
+    groups, measured, ground, images, cameras = network
     n_common = out.common.shape[0]
     most = 0
     for group in range(first_group, last_group):
@@ -390,11 +397,7 @@ def normals_of_point(
 def move_points(
     first_group: int,
     last_group: int,
-    groups: PointGroups,
-    measured: Measured,
-    ground: Ground,
-    images: Images,
-    cameras: Cameras,
+    network: Network,
     image_step: _Floats,
     common_step: _Floats,
     damping: float,
@@ -409,6 +412,7 @@ def move_points(
     new_position_m
         (p, 3) written; a point that is not determined stays.
     """
+    groups, measured, ground, images, cameras = network
     points = range(groups.offsets[first_group], groups.offsets[last_group])
     most = 0
     for point in points:
@@ -436,3 +440,19 @@ def move_points(
             side[:] = 0.0
         for i in range(3):
             new_position_m[point, i] = ground.position_m[point, i] - side[i, 0]
+
+
+@kernel
+def ray_residuals(
+    network: Network,
+    residual_px: _Floats,
+) -> None:
+    """Write the residuals (m, 2), computed minus measured, NaN behind a camera."""
+    groups, measured, ground, images, cameras = network
+    ray = new_ray(0)
+    for point in range(len(groups.first_ray) - 1):
+        for k in range(groups.first_ray[point], groups.first_ray[point + 1]):
+            image = groups.ray_image[k]
+            seen = linearise(k, point, image, measured, ground.position_m, images, cameras, ray)
+            for axis in range(2):
+                residual_px[k, axis] = ray.residual[axis] if seen else np.nan

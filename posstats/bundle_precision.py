@@ -18,6 +18,7 @@ from posstats.bundle_groups import PointGroups
 from posstats.bundle_normals import (
     Ground,
     Measured,
+    Network,
     factorise_point,
     linearise,
     normals_of_point,
@@ -56,14 +57,11 @@ class PointPrecision(NamedTuple):
     ----------
     covariance_m2
         (p, 3, 3); NaN of a point that is not determined.
-    residual_px
-        (m, 2) computed minus measured.
     redundancy
         (m, 2) of the rays' x, y; NaN of a ray that is taken out.
     """
 
     covariance_m2: _Floats
-    residual_px: _Floats
     redundancy: _Floats
 
 
@@ -187,18 +185,16 @@ def _point(
     normals_of_point(point, groups, measured, ground, images, cameras, ray, normals, side, rows)
     if not factorise_point(normals):
         covariance[:] = np.nan
-        out.residual_px[first : first + n] = np.nan
         out.redundancy[first : first + n] = np.nan
         return
     _propagate(normals, rows, local, shared, covariance)
     for place in range(n):
         k, i = first + place, groups.ray_image[first + place]
         for axis in range(2):
-            out.redundancy[k, axis] = out.residual_px[k, axis] = np.nan
+            out.redundancy[k, axis] = np.nan
         if not linearise(k, point, i, measured, ground.position_m, images, cameras, ray):
             continue
         for axis in range(2):
-            out.residual_px[k, axis] = ray.residual[axis]
             if measured.weight[k] > 0.0:
                 count = _by_unknowns(
                     ray, axis, place, n, images.camera[i], cameras.column, row, used
@@ -213,11 +209,7 @@ def _point(
 def point_precision(
     first_group: int,
     last_group: int,
-    groups: PointGroups,
-    measured: Measured,
-    ground: Ground,
-    images: Images,
-    cameras: Cameras,
+    network: Network,
     cofactors: Cofactors,
     out: PointPrecision,
 ) -> None:
@@ -226,6 +218,7 @@ def point_precision(
     Parameters are those of `bundle_normals.accumulate`, and `cofactors` of the solution, of
     the same pairs.
     """
+    groups, measured, ground, images, cameras = network
     n_common = cofactors.corner.shape[0]
     most = 0
     for group in range(first_group, last_group):

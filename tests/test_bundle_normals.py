@@ -9,9 +9,11 @@ from posstats.bundle_groups import grouped
 from posstats.bundle_normals import (
     Ground,
     Measured,
+    Network,
     Reduced,
     accumulate,
     move_points,
+    ray_residuals,
 )
 from posstats.bundle_precision import Cofactors, PointPrecision, point_precision
 from posstats.bundle_rays import Cameras, Images, project_rays
@@ -50,11 +52,11 @@ class Written:
         self.control_m = ground[[5, 2]]
         self.groups = grouped(self.point, self.image, self.n)
 
-    def kernel_arguments(self):
+    def network(self):
         order = self.groups.ray
         position = self.ground[self.groups.point]
         control = self.control[self.groups.point]
-        return (
+        return Network(
             self.groups.groups,
             Measured(self.xy[order], self.weight[order]),
             Ground(position, control, self.control_m, self.control_weight),
@@ -99,7 +101,7 @@ def accumulated(problem, damping=0.0):
     determined = np.zeros(len(pairs.point), dtype=bool)
     sums = np.zeros(3)
     for part in pairs.parts:
-        sums += accumulate(*part, *problem.kernel_arguments(), damping, determined, reduced)
+        sums += accumulate(*part, problem.network(), damping, determined, reduced)
     assert determined.all()
     return reduced, sums
 
@@ -171,7 +173,7 @@ def test_the_points_step_is_that_of_the_dense_equations():
     steps = given[: 6 * n].reshape(n, 6), given[6 * n :]
     moved = np.empty_like(problem.ground)[problem.groups.point]
     for part in problem.groups.parts:
-        move_points(*part, *problem.kernel_arguments(), *steps, damping, moved)
+        move_points(*part, problem.network(), *steps, damping, moved)
     change = moved - problem.ground[problem.groups.point]
     close(change, expected.reshape(-1, 3)[problem.groups.point], 1e-8)
 
@@ -192,15 +194,17 @@ def test_covariances_and_redundancies_are_those_of_the_dense_inverse():
         inverse[6 * n : u, 6 * n : u].copy(),
     )
     m, p = len(problem.point), len(pairs.point)
-    out = PointPrecision(np.empty((p, 3, 3)), np.empty((m, 2)), np.empty((m, 2)))
+    out = PointPrecision(np.empty((p, 3, 3)), np.empty((m, 2)))
     for part in pairs.parts:
-        point_precision(*part, *problem.kernel_arguments(), cofactors, out)
+        point_precision(*part, problem.network(), cofactors, out)
     for at, point in enumerate(pairs.point):
         block = slice(u + 3 * point, u + 3 * point + 3)
         scaled_close(out.covariance_m2[at], inverse[block, block], 1e-8)
     redundancy = 1.0 - np.einsum("ij,jk,ik->i", design, inverse, design) * np.diagonal(weight)
     close(out.redundancy, redundancy[: 2 * m].reshape(m, 2)[pairs.ray], 1e-8)
-    close(out.residual_px, residual[: 2 * m].reshape(m, 2)[pairs.ray])
+    computed = np.empty((m, 2))
+    ray_residuals(problem.network(), computed)
+    close(computed, residual[: 2 * m].reshape(m, 2)[pairs.ray])
 
 
 def test_a_point_of_one_ray_is_not_determined():
@@ -216,5 +220,5 @@ def test_a_point_of_one_ray_is_not_determined():
     )  # fmt: skip
     determined = np.zeros(len(order.point), dtype=bool)
     for part in order.parts:
-        accumulate(*part, *problem.kernel_arguments(), 0.0, determined, reduced)
+        accumulate(*part, problem.network(), 0.0, determined, reduced)
     np.testing.assert_array_equal(order.point[~determined], [point])

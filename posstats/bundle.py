@@ -1,0 +1,213 @@
+"""The POS-supported self-calibrating bundle block adjustment (second source paper).
+
+Image coordinates, antenna positions, IMU angles, control points and prior values of additional
+parameters are adjusted together by least squares: Gauss-Newton, damped after Levenberg and
+Marquardt where a step would raise the weighted sum of squares.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.block_tridiagonal import SelectedInverse
+from posstats.bundle_problem import AdjustedBundle, BundleProblem, ObservationGroup
+from posstats.bundle_system import BundleSystem, Equations, State
+from posstats.errors import ConvergenceError, GeometryError
+
+_Floats = NDArray[np.float64]
+
+MAX_ITERATIONS = 50
+_SETTLED = 1e-5  # length of the last step in standard deviations, all unknowns together
+_ROUGHLY = 0.1  # mean square step in standard deviations from which on weights are settled
+_ROUNDING = 1e-11  # relative change of a sum of squares that is none
+_FIRST_DAMPING = 1e-4
+_LEAST_DAMPING = 1e-7
+_MOST_DAMPING = 1e8
+_HUBER = 1.345
+_REJECTION = 3.5
+_NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
+_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
+
+
+def adjust(
+    problem: BundleProblem,
+    *,
+    robust: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> AdjustedBundle:
+    """Adjust a block.
+
+    Points that their rays do not determine are left out. The robust solution reweights image
+    rays after Huber until it settles, then takes out rays beyond 3.5 standard deviations (median
+    absolute deviation), fixes that choice and converges as least squares.
+
+    Raises
+    ------
+    ConvergenceError
+        If it does not settle in `MAX_ITERATIONS` steps.
+    UndeterminedError
+        If observations and priors do not determine every orientation and parameter.
+    GeometryError
+        If start values put points behind cameras, or a parameter has no scope.
+    """
+    iteration = _Iteration(progress)
+    system = BundleSystem.of(problem)
+    system, equations = _linearised(system, system.start)
+    if robust:
+        stated = system.weight
+        for weights in (_huber, _kept):
+            length, roughly = np.inf, _ROUGHLY * system.n_unknowns
+            while length > roughly:
+                weight = stated * weights(
+                    system.residuals(equations.state) * np.sqrt(stated)[:, None]
+                )
+                system, equations = _linearised(system.with_weight(weight), equations.state)
+                equations, length = iteration.step(system, equations)
+    length = np.inf
+    while length > _SETTLED**2:
+        equations, length = iteration.step(system, equations)
+    return _result(system, equations, iteration.count)
+
+
+def _linearised(system: BundleSystem, state: State) -> tuple[BundleSystem, Equations]:
+    """The equations at a state, and the system without points that are not determined there."""
+    equations = system.equations(state)
+    if not np.isfinite(equations.cost):
+        raise GeometryError("points lie behind cameras: check the angles, their system and axes")
+    if equations.determined.all():
+        return system, equations
+    kept = np.repeat(equations.determined, np.diff(system.rays.groups.first_ray))
+    system = system.with_weight(np.where(kept, system.weight, 0.0))
+    return system, system.equations(state)
+
+
+@dataclass
+class _Iteration:
+    """Steps to smaller sums of squares, counted over all phases."""
+
+    progress: Callable[[int, int], object] | None
+    count: int = 0
+
+    def step(self, system: BundleSystem, equations: Equations) -> tuple[Equations, float]:
+        """The next equations, and the square of the step to them in standard deviations.
+
+        A damped step has no such length: it is infinite.
+        """
+        while True:
+            self._counted(equations)
+            damping = equations.damping
+            state, square = system.step(equations)
+            eased = 0.1 * damping if damping > 10.0 * _LEAST_DAMPING else 0.0
+            after = system.equations(state, eased)
+            if after.determined.all() and after.cost <= (1.0 + _ROUNDING) * equations.cost:
+                return after, square if damping == 0.0 else np.inf
+            damping = max(10.0 * damping, _FIRST_DAMPING)
+            equations = system.equations(equations.state, damping)
+
+    def _counted(self, equations: Equations) -> None:
+        if self.count == MAX_ITERATIONS or equations.damping > _MOST_DAMPING:
+            raise ConvergenceError(
+                f"the bundle adjustment did not settle in {self.count} steps: check the angles,"
+                " their system, and the identities of the points"
+            )
+        self.count += 1
+        if self.progress is not None:
+            self.progress(self.count, MAX_ITERATIONS)
+
+
+def _scale(standardised: _Floats) -> float:
+    """Scale of standardised residuals (m, 2), from their median."""
+    spread = _NORMAL_MAD * float(np.nanmedian(np.abs(standardised)))
+    return max(spread, _SMALLEST_SCALE)
+
+
+def _huber(standardised: _Floats) -> _Floats:
+    """(m,) Huber's weights of rays by the larger of their standardised residuals (m, 2)."""
+    limit = _HUBER * _scale(standardised)
+    weight: _Floats = limit / np.maximum(np.abs(standardised).max(axis=1), limit)
+    return weight
+
+
+def _kept(standardised: _Floats) -> _Floats:
+    """(m,) 1, or 0 of blunders."""
+    limit = _REJECTION * _scale(standardised)
+    return np.where(np.abs(standardised).max(axis=1) <= limit, 1.0, 0.0)
+
+
+def _result(system: BundleSystem, equations: Equations, n_iterations: int) -> AdjustedBundle:
+    problem, state = system.problem, equations.state
+    inverse, precision = system.precision(equations)
+    residual_px = _by_ray(system, system.residuals(state))
+    redundancy_px = _by_ray(system, precision.redundancy)
+    ground_m = _by_point(system, state.ground_m)
+    covariance = _by_point(system, precision.covariance_m2)
+    ground_m[np.isnan(covariance[:, 0, 0])] = np.nan
+    control = problem.control
+    residual_control = ground_m[control.point] - control.position_m
+    redundancy_control = 1.0 - np.einsum(
+        "gij,gji->gi", system.control_weight, covariance[control.point]
+    )
+    redundancy_pos = _pos_redundancy(system, equations, inverse)
+    prior = np.array([parameter.weight for parameter in problem.parameters])
+    redundancy_prior = np.where(prior > 0.0, 1.0 - prior * np.diagonal(inverse.corner), np.nan)
+    redundancies = {
+        "image": redundancy_px,
+        "gnss": redundancy_pos[:, :3],
+        "imu": redundancy_pos[:, 3:],
+        "control": redundancy_control,
+        "parameters": redundancy_prior,
+    }
+    groups = {
+        name: ObservationGroup(int(np.isfinite(r).sum()), square_sum, float(np.nansum(r)))
+        for (name, r), square_sum in zip(redundancies.items(), equations.square_sums, strict=True)
+    }
+    n_points = int(np.isfinite(covariance[:, 0, 0]).sum())
+    n_unknowns = 3 * n_points + 6 * len(state.position_m) + len(state.common)
+    return AdjustedBundle(
+        ground_from_image=state.ground_from_image,
+        position_m=state.position_m,
+        ground_m=ground_m,
+        common=state.common,
+        inverse=inverse,
+        ground_covariance_m2=covariance,
+        residual_px=residual_px,
+        redundancy_px=redundancy_px,
+        residual_pos=equations.pos.residual,
+        redundancy_pos=redundancy_pos,
+        residual_control_m=residual_control,
+        redundancy_control=redundancy_control,
+        rejected=np.isnan(redundancy_px[:, 0]),
+        groups=groups,
+        dof=sum(group.n for group in groups.values()) - n_unknowns,
+        n_iterations=n_iterations,
+        system=problem.pos.system,
+    )
+
+
+def _by_ray(system: BundleSystem, values: _Floats) -> _Floats:
+    """(m, ...) in the order of the problem."""
+    result = np.empty_like(values)
+    result[system.rays.ray] = values
+    return result
+
+
+def _by_point(system: BundleSystem, values: _Floats) -> _Floats:
+    """(p, ...) in the order of the problem, NaN of points without rays."""
+    result = np.full((len(system.problem.ground_m), *values.shape[1:]), np.nan)
+    result[system.rays.point] = values
+    return result
+
+
+def _pos_redundancy(
+    system: BundleSystem, equations: Equations, inverse: SelectedInverse
+) -> _Floats:
+    """(n, 6) redundancy numbers of antenna positions and angles, NaN where not observed."""
+    pos, weight = equations.pos, system.problem.pos.weight
+    image = np.arange(len(weight))
+    own = inverse.blocks(image, image)
+    variance = ((pos.by_pose @ own) * pos.by_pose).sum(axis=2)
+    crossed = 2.0 * pos.by_pose @ inverse.border + pos.by_common @ inverse.corner
+    variance += (crossed * pos.by_common).sum(axis=2)
+    return np.where(weight > 0.0, 1.0 - weight * variance, np.nan)
