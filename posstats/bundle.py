@@ -19,7 +19,7 @@ from posstats.errors import ConvergenceError, GeometryError
 _Floats = NDArray[np.float64]
 
 MAX_ITERATIONS = 50
-_SETTLED = 1e-5  # length of the last step in standard deviations, all unknowns together
+_SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together
 _ROUGHLY = 0.1  # mean square step in standard deviations from which on weights are settled
 _ROUNDING = 1e-11  # relative change of a sum of squares that is none
 _FIRST_DAMPING = 1e-4
@@ -65,9 +65,11 @@ def adjust(
                 )
                 system, equations = _linearised(system.with_weight(weight), equations.state)
                 equations, length = iteration.step(system, equations)
-    length = np.inf
-    while length > _SETTLED**2:
+    length, next_length = np.inf, np.inf
+    while not next_length < _SETTLED**2:
+        before = length
         equations, length = iteration.step(system, equations)
+        next_length = length**2 / before
     return _result(system, equations, iteration.count)
 
 
