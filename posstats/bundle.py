@@ -65,11 +65,12 @@ def adjust(
                 )
                 system, equations = _linearised(system.with_weight(weight), equations.state)
                 equations, length = iteration.step(system, equations)
-    length, next_length = np.inf, np.inf
-    while not next_length < _SETTLED**2:
+    equations, length = iteration.step(system, equations)
+    foretold = np.inf
+    while not foretold < _SETTLED**2:
         before = length
         equations, length = iteration.step(system, equations)
-        next_length = length**2 / before
+        foretold = length**2 / before if np.isfinite(before) else np.inf
     return _result(system, equations, iteration.count)
 
 

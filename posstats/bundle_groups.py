@@ -5,6 +5,7 @@ put side by side, so that their sum goes to the block's normal equations once.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -120,7 +121,12 @@ def _differs(first_ray: _Ints, ray_image: _Ints) -> NDArray[np.bool_]:
     return differs
 
 
+@lru_cache(maxsize=64)
+def _upper(n: int) -> tuple[_Ints, _Ints]:
+    return np.triu_indices(n)
+
+
 def _pairs(images: _Ints) -> _Ints:
     """(2, n (n + 1) / 2) images i <= j, row by row."""
-    rows, columns = np.triu_indices(len(images))
+    rows, columns = _upper(len(images))
     return np.stack([images[rows], images[columns]])

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from posstats.bundle_groups import PointGroups
 from posstats.bundle_rays import Cameras, Images, Ray, new_ray, observe
-from posstats.compiled import inner_kernel, kernel
+from posstats.compiled import inlined_kernel, kernel
 from posstats.kernel_algebra import add_products
 
 _Floats = NDArray[np.float64]
@@ -100,7 +100,7 @@ class Reduced(NamedTuple):
     common: _Floats
 
 
-@inner_kernel
+@inlined_kernel
 def linearise(
     ray: int,
     point: int,
@@ -119,7 +119,7 @@ def linearise(
     return True
 
 
-@inner_kernel
+@inlined_kernel
 def add_to_point(
     ray: Ray,
     weight: float,
@@ -131,22 +131,32 @@ def add_to_point(
     side: _Floats,
     rows: _Floats,
 ) -> None:
-    """Add a ray, of the point's image number `place`, to N, n and K (3, 6 n_images + k)."""
-    for axis in range(2):
-        for i in range(3):
-            scaled = weight * ray.by_ground[axis, i]
-            side[i] += scaled * ray.residual[axis]
-            for j in range(3):
-                normals[i, j] += scaled * ray.by_ground[axis, j]
-            for j in range(6):
-                rows[i, 6 * place + j] += scaled * ray.by_pose[axis, j]
-            for k in range(ray.by_camera.shape[1]):
-                if column[camera, k] >= 0:
-                    at = 6 * n_images + column[camera, k]
-                    rows[i, at] += scaled * ray.by_camera[axis, k]
+    """Add a ray to N and n, and write its part of K (3, 6 n_images + k).
+
+    The ray is that of the point's image number `place`. With Q = w B'B and its offset d, its
+    columns of K are [Q [d]x, -Q].
+    """
+    b, d, at = ray.by_ground, ray.offset, 6 * place
+    for i in range(3):
+        x, y = weight * b[0, i], weight * b[1, i]
+        q0, q1, q2 = (
+            x * b[0, 0] + y * b[1, 0], x * b[0, 1] + y * b[1, 1], x * b[0, 2] + y * b[1, 2]
+        )  # fmt: skip
+        side[i] += x * ray.residual[0] + y * ray.residual[1]
+        normals[i, 0] += q0
+        normals[i, 1] += q1
+        normals[i, 2] += q2
+        rows[i, at] = q1 * d[2] - q2 * d[1]
+        rows[i, at + 1] = q2 * d[0] - q0 * d[2]
+        rows[i, at + 2] = q0 * d[1] - q1 * d[0]
+        rows[i, at + 3], rows[i, at + 4], rows[i, at + 5] = -q0, -q1, -q2
+        for k in range(ray.by_camera.shape[1]):
+            if column[camera, k] >= 0:
+                common = 6 * n_images + column[camera, k]
+                rows[i, common] += x * ray.by_camera[0, k] + y * ray.by_camera[1, k]
 
 
-@inner_kernel
+@inlined_kernel
 def add_control(point: int, ground: Ground, normals: _Floats, side: _Floats) -> float:
     """Add a point's control to N and n; its weighted square sum is returned."""
     control, square_sum = ground.control[point], 0.0
@@ -163,7 +173,7 @@ def add_control(point: int, ground: Ground, normals: _Floats, side: _Floats) -> 
     return square_sum
 
 
-@inner_kernel
+@inlined_kernel
 def factorise_point(normals: _Floats) -> bool:
     """Lower Cholesky factor (3, 3) in place; false if the point is not determined."""
     a, b, c = normals[0, 0], normals[1, 1], normals[2, 2]
@@ -184,7 +194,7 @@ def factorise_point(normals: _Floats) -> bool:
     return True
 
 
-@inner_kernel
+@inlined_kernel
 def solve_lower(lower: _Floats, rows: _Floats) -> None:
     """L^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
@@ -194,7 +204,7 @@ def solve_lower(lower: _Floats, rows: _Floats) -> None:
         rows[2, j] = (rows[2, j] - lower[2, 0] * x - lower[2, 1] * y) / lower[2, 2]
 
 
-@inner_kernel
+@inlined_kernel
 def solve_upper(lower: _Floats, rows: _Floats) -> None:
     """L'^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
@@ -204,7 +214,7 @@ def solve_upper(lower: _Floats, rows: _Floats) -> None:
         rows[0, j] = (rows[0, j] - lower[1, 0] * y - lower[2, 0] * z) / lower[0, 0]
 
 
-@inner_kernel
+@inlined_kernel
 def _add_direct(
     ray: Ray,
     weight: float,
@@ -212,35 +222,54 @@ def _add_direct(
     n_images: int,
     camera: int,
     column: _Ints,
+    rows: _Floats,
     local: _Floats,
 ) -> float:
-    """Add w A'A and w A'v of a ray to a group's matrix (upper triangle); w v'v is returned."""
-    last, square_sum = local.shape[0] - 1, 0.0
-    for axis in range(2):
-        residual = ray.residual[axis]
-        square_sum += weight * residual * residual
-        for i in range(6):
-            row, scaled = 6 * place + i, weight * ray.by_pose[axis, i]
-            local[row, last] += scaled * residual
-            for j in range(i, 6):
-                local[row, 6 * place + j] += scaled * ray.by_pose[axis, j]
-            for k in range(ray.by_camera.shape[1]):
-                if column[camera, k] >= 0:
-                    at = 6 * n_images + column[camera, k]
-                    local[row, at] += scaled * ray.by_camera[axis, k]
-        for k in range(ray.by_camera.shape[1]):
-            if column[camera, k] >= 0:
-                row = 6 * n_images + column[camera, k]
-                scaled = weight * ray.by_camera[axis, k]
-                local[row, last] += scaled * residual
-                for j in range(ray.by_camera.shape[1]):
-                    if column[camera, j] >= column[camera, k]:
-                        at = 6 * n_images + column[camera, j]
-                        local[row, at] += scaled * ray.by_camera[axis, j]
-    return square_sum
+    """Add w A'A and w A'v of a ray to a group's matrix (upper triangle); w v'v is returned.
+
+    `rows` is what `add_to_point` wrote: A'A = [d]x' [Q [d]x, -Q] in the rotation's rows.
+    """
+    v, b, d, at, last = ray.residual, ray.by_ground, ray.offset, 6 * place, local.shape[0] - 1
+    for j in range(6):
+        x, y, z = rows[0, at + j], rows[1, at + j], rows[2, at + j]
+        local[at, at + j] += y * d[2] - z * d[1]
+        if j > 0:
+            local[at + 1, at + j] += z * d[0] - x * d[2]
+        if j > 1:
+            local[at + 2, at + j] += x * d[1] - y * d[0]
+        for i in range(3, j + 1):
+            local[at + i, at + j] -= rows[i - 3, at + j]
+    v0, v1 = weight * v[0], weight * v[1]
+    _add_turned(v0 * b[0, 0] + v1 * b[1, 0], v0 * b[0, 1] + v1 * b[1, 1],
+                v0 * b[0, 2] + v1 * b[1, 2], d, at, last, local)  # fmt: skip
+    for k in range(ray.by_camera.shape[1]):
+        if column[camera, k] >= 0:
+            row = 6 * n_images + column[camera, k]
+            c0, c1 = weight * ray.by_camera[0, k], weight * ray.by_camera[1, k]
+            _add_turned(c0 * b[0, 0] + c1 * b[1, 0], c0 * b[0, 1] + c1 * b[1, 1],
+                        c0 * b[0, 2] + c1 * b[1, 2], d, at, row, local)  # fmt: skip
+            local[row, last] += c0 * v[0] + c1 * v[1]
+            for j in range(ray.by_camera.shape[1]):
+                if column[camera, j] >= column[camera, k]:
+                    other = 6 * n_images + column[camera, j]
+                    local[row, other] += c0 * ray.by_camera[0, j] + c1 * ray.by_camera[1, j]
+    return float(v0 * v[0] + v1 * v[1])
 
 
-@inner_kernel
+@inlined_kernel
+def _add_turned(
+    x: float, y: float, z: float, d: _Floats, row: int, column: int, local: _Floats
+) -> None:
+    """Add [[d]x, -1]' (x, y, z) to six rows of a column."""
+    local[row, column] += y * d[2] - z * d[1]
+    local[row + 1, column] += z * d[0] - x * d[2]
+    local[row + 2, column] += x * d[1] - y * d[0]
+    local[row + 3, column] -= x
+    local[row + 4, column] -= y
+    local[row + 5, column] -= z
+
+
+@inlined_kernel
 def _add_point(
     point: int,
     groups: PointGroups,
@@ -270,7 +299,7 @@ def _add_point(
         if not linearise(k, point, i, measured, ground.position_m, images, cameras, ray):
             return False, np.inf, 0.0
         add_to_point(ray, weight, place, n, camera, column, normals, side, rows)
-        square_sum += _add_direct(ray, weight, place, n, camera, column, local)
+        square_sum += _add_direct(ray, weight, place, n, camera, column, rows, local)
     control = add_control(point, ground, normals, side)
     if normals[0, 0] == 0.0:  # all of its rays are taken out
         return True, 0.0, 0.0
@@ -283,7 +312,7 @@ def _add_point(
     return determined, square_sum, control
 
 
-@inner_kernel
+@inlined_kernel
 def _scatter(local: _Floats, members: _Ints, pairs: _Ints, n_common: int, out: Reduced) -> None:
     """Add a group's matrix (upper triangle) to the block's."""
     n, last, at = len(members), local.shape[0] - 1, 0
@@ -367,7 +396,7 @@ def accumulate(
     return image_sum, control_sum, gain
 
 
-@inner_kernel
+@inlined_kernel
 def normals_of_point(
     point: int,
     groups: PointGroups,
@@ -444,13 +473,15 @@ def move_points(
 
 @kernel
 def ray_residuals(
-    network: Network,
-    residual_px: _Floats,
+    first_group: int, last_group: int, network: Network, residual_px: _Floats
 ) -> None:
-    """Write the residuals (m, 2), computed minus measured, NaN behind a camera."""
+    """Write the residuals (m, 2) of the rays of some groups, NaN behind a camera.
+
+    Parameters are those of `accumulate`; a residual is computed minus measured.
+    """
     groups, measured, ground, images, cameras = network
     ray = new_ray(0)
-    for point in range(len(groups.first_ray) - 1):
+    for point in range(groups.offsets[first_group], groups.offsets[last_group]):
         for k in range(groups.first_ray[point], groups.first_ray[point + 1]):
             image = groups.ray_image[k]
             seen = linearise(k, point, image, measured, ground.position_m, images, cameras, ray)

@@ -26,7 +26,7 @@ from posstats.bundle_normals import (
     solve_upper,
 )
 from posstats.bundle_rays import Cameras, Images, Ray, new_ray
-from posstats.compiled import inner_kernel, kernel
+from posstats.compiled import inlined_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -65,7 +65,7 @@ class PointPrecision(NamedTuple):
     redundancy: _Floats
 
 
-@inner_kernel
+@inlined_kernel
 def _gather(members: _Ints, pairs: _Ints, cofactors: Cofactors, local: _Floats) -> None:
     """Write the covariance (6 n + k)^2 of a group's images and of the camera unknowns."""
     n, n_common, at = len(members), cofactors.corner.shape[0], 0
@@ -86,57 +86,67 @@ def _gather(members: _Ints, pairs: _Ints, cofactors: Cofactors, local: _Floats) 
             local[6 * n + a, 6 * n + b] = cofactors.corner[a, b]
 
 
-@inner_kernel
-def _by_unknowns(
-    ray: Ray,
-    axis: int,
-    place: int,
-    n_images: int,
-    camera: int,
-    column: _Ints,
-    row: _Floats,
-    used: _Ints,
-) -> int:
-    """Write the elements of a row of A that are not 0 and their columns; their number."""
-    for i in range(6):
-        row[i], used[i] = ray.by_pose[axis, i], 6 * place + i
-    count = 6
-    for k in range(ray.by_camera.shape[1]):
-        if column[camera, k] >= 0:
-            row[count], used[count] = ray.by_camera[axis, k], 6 * n_images + column[camera, k]
-            count += 1
-    return count
-
-
-@inner_kernel
-def _coordinate_variance(
-    ray: Ray,
-    axis: int,
-    count: int,
-    row: _Floats,
-    used: _Ints,
+@inlined_kernel
+def _shift_covariance(
+    d: _Floats,
+    at: int,
     local: _Floats,
     shared: _Floats,
     point: int,
     covariance: _Floats,
-) -> float:
-    """Variance of an adjusted image coordinate; shared: U C (3, 6 n + k), covariance: cov X."""
-    variance = 0.0
-    for i in range(count):
-        across = 0.0
-        for j in range(count):
-            across += row[j] * local[used[i], used[j]]
-        for j in range(3):
-            across -= 2.0 * ray.by_ground[axis, j] * shared[j, used[i]]
-        variance += row[i] * across
+    turned: _Floats,
+    out: _Floats,
+) -> None:
+    """Write cov(M s + dX) (3, 3), M = [[d]x, -1]: what a ray sees of its image and its point.
+
+    `shared` is U C (3, 6 n + k), `covariance` cov X, `turned` room for M C (3, 6).
+    """
+    for j in range(6):
+        x, y, z = local[at, at + j], local[at + 1, at + j], local[at + 2, at + j]
+        turned[0, j] = d[1] * z - d[2] * y - local[at + 3, at + j]
+        turned[1, j] = d[2] * x - d[0] * z - local[at + 4, at + j]
+        turned[2, j] = d[0] * y - d[1] * x - local[at + 5, at + j]
     for i in range(3):
-        for j in range(3):
-            scale = ray.by_ground[axis, i] * ray.by_ground[axis, j]
-            variance += scale * covariance[point, i, j]
+        for j in range(6):
+            turned[i, j] -= 2.0 * shared[i, at + j]
+    for i in range(3):
+        x, y, z = turned[i, 0], turned[i, 1], turned[i, 2]
+        out[i, 0] = d[1] * z - d[2] * y - turned[i, 3] + covariance[point, i, 0]
+        out[i, 1] = d[2] * x - d[0] * z - turned[i, 4] + covariance[point, i, 1]
+        out[i, 2] = d[0] * y - d[1] * x - turned[i, 5] + covariance[point, i, 2]
+
+
+@inlined_kernel
+def _camera_variance(
+    ray: Ray,
+    axis: int,
+    at: int,
+    n_images: int,
+    camera: int,
+    column: _Ints,
+    local: _Floats,
+    shared: _Floats,
+) -> float:
+    """What the camera's unknowns add to the variance of an adjusted image coordinate."""
+    b, d, variance = ray.by_ground, ray.offset, 0.0
+    for k in range(ray.by_camera.shape[1]):
+        if column[camera, k] < 0:
+            continue
+        row, across = 6 * n_images + column[camera, k], 0.0
+        x, y, z = local[row, at], local[row, at + 1], local[row, at + 2]
+        across += b[axis, 0] * (d[1] * z - d[2] * y - local[row, at + 3] - shared[0, row])
+        across += b[axis, 1] * (d[2] * x - d[0] * z - local[row, at + 4] - shared[1, row])
+        across += b[axis, 2] * (d[0] * y - d[1] * x - local[row, at + 5] - shared[2, row])
+        across *= 2.0
+        for j in range(ray.by_camera.shape[1]):
+            if column[camera, j] >= 0:
+                other = 6 * n_images + column[camera, j]
+                across += ray.by_camera[axis, j] * local[row, other]
+        variance += ray.by_camera[axis, k] * across
     return variance
 
 
-@inner_kernel
+@inlined_kernel
 def _propagate(
     lower: _Floats, rows: _Floats, local: _Floats, shared: _Floats, out: _Floats
 ) -> None:
@@ -161,7 +171,7 @@ def _propagate(
                 out[i, j] += shared[i, a] * rows[j, a]
 
 
-@inner_kernel
+@inlined_kernel
 def _point(
     point: int,
     groups: PointGroups,
@@ -175,8 +185,8 @@ def _point(
     side: _Floats,
     rows: _Floats,
     shared: _Floats,
-    used: _Ints,
-    row: _Floats,
+    turned: _Floats,
+    seen: _Floats,
     out: PointPrecision,
 ) -> None:
     """Write the results of one point and its rays."""
@@ -190,19 +200,22 @@ def _point(
     _propagate(normals, rows, local, shared, covariance)
     for place in range(n):
         k, i = first + place, groups.ray_image[first + place]
-        for axis in range(2):
-            out.redundancy[k, axis] = np.nan
-        if not linearise(k, point, i, measured, ground.position_m, images, cameras, ray):
+        weight, camera = measured.weight[k], images.camera[i]
+        if weight == 0.0:
+            out.redundancy[k, 0] = out.redundancy[k, 1] = np.nan
             continue
+        linearise(k, point, i, measured, ground.position_m, images, cameras, ray)
+        _shift_covariance(
+            ray.offset, 6 * place, local, shared, point, out.covariance_m2, turned, seen
+        )
         for axis in range(2):
-            if measured.weight[k] > 0.0:
-                count = _by_unknowns(
-                    ray, axis, place, n, images.camera[i], cameras.column, row, used
-                )
-                variance = _coordinate_variance(
-                    ray, axis, count, row, used, local, shared, point, out.covariance_m2
-                )
-                out.redundancy[k, axis] = 1.0 - measured.weight[k] * variance
+            variance = _camera_variance(
+                ray, axis, 6 * place, n, camera, cameras.column, local, shared
+            )
+            for j in range(3):
+                for m in range(3):
+                    variance += ray.by_ground[axis, j] * seen[j, m] * ray.by_ground[axis, m]
+            out.redundancy[k, axis] = 1.0 - weight * variance
 
 
 @kernel
@@ -228,7 +241,7 @@ def point_precision(
     local_store = np.empty(widest**2)
     rows_store, shared_store = np.empty(3 * widest), np.empty(3 * widest)
     ray, normals, side = new_ray(n_common), np.empty((3, 3)), np.empty(3)
-    used, row = np.empty(6 + n_common, dtype=np.intp), np.empty(6 + n_common)
+    turned, seen = np.empty((3, 6)), np.empty((3, 3))
     for group in range(first_group, last_group):
         point = groups.offsets[group]
         first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]
@@ -241,5 +254,5 @@ def point_precision(
         for each in range(point, groups.offsets[group + 1]):
             _point(
                 each, groups, measured, ground, images, cameras, local,
-                ray, normals, side, rows, shared, used, row, out,
+                ray, normals, side, rows, shared, turned, seen, out,
             )  # fmt: skip

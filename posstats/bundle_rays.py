@@ -18,7 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
+from posstats.compiled import inlined_kernel, kernel
+from posstats.kernel_algebra import cross
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -74,25 +75,40 @@ class Cameras(NamedTuple):
 
 
 class Ray(NamedTuple):
-    """Room for a ray: residual (2,), derivatives (2, 6), (2, 3) and (2, 11) or (2, 0)."""
+    """Room for one ray.
+
+    Derivatives by the image's unknowns follow from those by the point, b: they are b x d by the
+    rotation vector and -b by the projection centre.
+
+    Attributes
+    ----------
+    residual
+        (2,) px.
+    offset
+        (3,) d = X - S, m.
+    by_ground
+        (2, 3) px/m.
+    by_camera
+        (2, 11) px by `CAMERA_PARAMETERS`, or (2, 0): not wanted.
+    """
 
     residual: _Floats
-    by_pose: _Floats
+    offset: _Floats
     by_ground: _Floats
     by_camera: _Floats
 
 
-@inner_kernel
+@inlined_kernel
 def new_ray(n_common: int) -> Ray:
     """Room for one ray; derivatives by the camera are wanted if there are common unknowns."""
     n_camera = 11 if n_common > 0 else 0
-    return Ray(np.empty(2), np.empty((2, 6)), np.empty((2, 3)), np.empty((2, n_camera)))
+    return Ray(np.empty(2), np.empty(3), np.empty((2, 3)), np.empty((2, n_camera)))
 
 
 # Elements are addressed one by one below: a view of an array costs more than its numbers.
 
 
-@inner_kernel
+@inlined_kernel
 def observe(
     ground_m: _Floats, point: int, image: int, images: Images, cameras: Cameras, out: Ray
 ) -> bool:
@@ -111,23 +127,18 @@ def observe(
     b = -(r[image, 0, 1] * dx + r[image, 1, 1] * dy + r[image, 2, 1] * dz) / uz
     x, y, xa, xb, ya, yb = _deformed(a, b, camera, cameras)
     out.residual[0], out.residual[1] = x, y
-    for axis in range(2):
-        ga, gb = (xa, xb) if axis == 0 else (ya, yb)
-        ga, gb, gz = -ga / uz, -gb / uz, -(ga * a + gb * b) / uz
-        gx = ga * r[image, 0, 0] + gb * r[image, 0, 1] + gz * r[image, 0, 2]
-        gy = ga * r[image, 1, 0] + gb * r[image, 1, 1] + gz * r[image, 1, 2]
-        gz = ga * r[image, 2, 0] + gb * r[image, 2, 1] + gz * r[image, 2, 2]
-        out.by_ground[axis, 0], out.by_ground[axis, 1], out.by_ground[axis, 2] = gx, gy, gz
-        out.by_pose[axis, 0] = gy * dz - gz * dy
-        out.by_pose[axis, 1] = gz * dx - gx * dz
-        out.by_pose[axis, 2] = gx * dy - gy * dx
-        out.by_pose[axis, 3], out.by_pose[axis, 4], out.by_pose[axis, 5] = -gx, -gy, -gz
+    out.offset[0], out.offset[1], out.offset[2] = dx, dy, dz
+    xz, yz = xa * a + xb * b, ya * a + yb * b
+    for j in range(3):
+        first, second, third = r[image, j, 0], r[image, j, 1], r[image, j, 2]
+        out.by_ground[0, j] = -(xa * first + xb * second + xz * third) / uz
+        out.by_ground[1, j] = -(ya * first + yb * second + yz * third) / uz
     if out.by_camera.shape[1] > 0:
         _derive_camera(a, b, camera, cameras, out)
     return True
 
 
-@inner_kernel
+@inlined_kernel
 def _deformed(
     a: float, b: float, camera: int, cameras: Cameras
 ) -> tuple[float, float, float, float, float, float]:
@@ -153,7 +164,7 @@ def _deformed(
     )  # fmt: skip
 
 
-@inner_kernel
+@inlined_kernel
 def _derive_camera(a: float, b: float, camera: int, cameras: Cameras, out: Ray) -> None:
     """Write the derivatives by `CAMERA_PARAMETERS`."""
     x, y, _, _, _, _ = _deformed(a, b, camera, cameras)
@@ -176,7 +187,7 @@ def _derive_camera(a: float, b: float, camera: int, cameras: Cameras, out: Ray) 
     _write(out, 10, c * (3.0 * a * a + b * b), 2.0 * c * a * b)
 
 
-@inner_kernel
+@inlined_kernel
 def _write(out: Ray, parameter: int, x: float, y: float) -> None:
     out.by_camera[0, parameter], out.by_camera[1, parameter] = x, y
 
@@ -207,10 +218,13 @@ def project_rays(
     by_camera
         (m, 2, 11) px by `CAMERA_PARAMETERS`.
     """
-    m = len(point)
+    m, offset = len(point), np.empty(3)
     xy, by_pose = np.full((m, 2), np.nan), np.full((m, 2, 6), np.nan)
     by_ground, by_camera = np.full((m, 2, 3), np.nan), np.full((m, 2, 11), np.nan)
     for k in range(m):
-        row = Ray(xy[k], by_pose[k], by_ground[k], by_camera[k])
-        observe(ground_m, point[k], image[k], images, cameras, row)
+        row = Ray(xy[k], offset, by_ground[k], by_camera[k])
+        if observe(ground_m, point[k], image[k], images, cameras, row):
+            for axis in range(2):
+                by_pose[k, axis, :3] = cross(by_ground[k, axis], offset)
+                by_pose[k, axis, 3:] = -by_ground[k, axis]
     return xy, by_pose, by_ground, by_camera

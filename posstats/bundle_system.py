@@ -255,8 +255,12 @@ class BundleSystem:
 
     def residuals(self, state: State) -> _Floats:
         """(m, 2) computed minus measured, px, of the rays by group; NaN behind a camera."""
-        residual = np.empty((len(self.rays.ray), 2))
-        ray_residuals(self._network(state), residual)
+        residual, network = np.empty((len(self.rays.ray), 2)), self._network(state)
+
+        def write(part: tuple[int, int]) -> None:
+            ray_residuals(*part, network, residual)
+
+        _in_threads(write, self.rays.parts)
         return residual
 
     def _network(self, state: State) -> Network:

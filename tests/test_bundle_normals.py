@@ -203,7 +203,8 @@ def test_covariances_and_redundancies_are_those_of_the_dense_inverse():
     redundancy = 1.0 - np.einsum("ij,jk,ik->i", design, inverse, design) * np.diagonal(weight)
     close(out.redundancy, redundancy[: 2 * m].reshape(m, 2)[pairs.ray], 1e-8)
     computed = np.empty((m, 2))
-    ray_residuals(problem.network(), computed)
+    for part in pairs.parts:
+        ray_residuals(*part, problem.network(), computed)
     close(computed, residual[: 2 * m].reshape(m, 2)[pairs.ray])
 
 
