@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from . import document, figures, html, tables
+from . import block_document, figures, html, tables
 from . import pdf as pdf_writer
 from .results_view import Results
 
@@ -25,7 +25,7 @@ def write_report(results: Results, folder: Path, *, pdf: bool = True) -> list[Pa
         written = tables.write_tables(results, folder / "tables")
         drawings = figures.draw(results)
         written += figures.write_figures(results, folder / "figures", drawings)
-        page = html.render(document.build(results, drawings))
+        page = html.render(block_document.build(results, drawings))
         written.append(_write(folder / "report.html", page.encode("utf-8")))
         if pdf:
             written.append(_write(folder / "report.pdf", pdf_writer.render(page)))

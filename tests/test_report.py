@@ -15,7 +15,7 @@ import pytest
 from report_results import area_results, assert_schema, coarse_results
 
 from posstats.errors import PosstatsError
-from posstats.reports import document, figures, html, pdf, tables, verdict
+from posstats.reports import block_document, figures, html, pdf, tables, verdict
 from posstats.reports.plan_view import PlanView
 from posstats.reports.report import write_report
 from posstats.reports.summary import summary
@@ -40,12 +40,12 @@ def coarse():
 
 @pytest.fixture(scope="module")
 def page(area) -> str:
-    return html.render(document.build(area))
+    return html.render(block_document.build(area))
 
 
 @pytest.fixture(scope="module")
 def coarse_page(coarse) -> str:
-    return html.render(document.build(coarse))
+    return html.render(block_document.build(coarse))
 
 
 class _Texts(HTMLParser):
@@ -117,7 +117,7 @@ def test_check_points_that_none_could_be_intersected_make_no_table(area):
     for row in results["check_points"]:
         row.update(dict.fromkeys(row.keys() - {"orientation", "translation_removed", "n"}), n=0)
     results["check_point_residuals"] = []
-    text = html.render(document.build(results))
+    text = html.render(block_document.build(results))
     assert 'id="table-check_points_shift_kept"' not in text
     assert "No check point could be intersected" in text
 
@@ -164,7 +164,7 @@ def test_hostile_ids_appear_as_text(area):
         row["left"] = HOSTILE
     results["warnings"] = [HOSTILE]
     results["inputs"] = [{"file": HOSTILE, "sha256": "0"}]
-    parsed = read(html.render(document.build(results)))
+    parsed = read(html.render(block_document.build(results)))
     assert "script" not in parsed.tags
     texts = [text.strip() for text in parsed.texts]
     assert texts.count(HOSTILE) >= 5
@@ -183,7 +183,7 @@ def test_no_number_has_more_digits_than_anyone_reads(page):
 
 def test_empty_lists_still_make_a_report(area):
     lists = {name: [] for name, value in area.items() if isinstance(value, list)}
-    text = html.render(document.build(area | lists | {"expected_noise_px": None}))
+    text = html.render(block_document.build(area | lists | {"expected_noise_px": None}))
     assert "no check points" in text.lower() or "not tested" in text
 
 
@@ -210,7 +210,7 @@ def test_figures_leave_the_settings_of_matplotlib_alone(area):
 
 
 def test_figures_and_page_are_the_same_bytes_every_time(area, page):
-    assert html.render(document.build(area)) == page
+    assert html.render(block_document.build(area)) == page
 
 
 def test_csv_tables_keep_every_row_and_every_digit(area, tmp_path):
@@ -359,7 +359,7 @@ def at_strips(results):
 
 def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area):
     results = at_strips(area)
-    text = html.render(document.build(results))
+    text = html.render(block_document.build(results))
     matrix = re.search(r'id="table-decisions_by_strip".*?</table>', text, re.DOTALL)[0]
     assert matrix.count("<tr>") == 1 + results["block"]["n_strips"]
     reasons = re.search(r'id="table-decisions".*?</table>', text, re.DOTALL)[0]
@@ -409,10 +409,10 @@ def test_verdict_says_what_a_poor_correction_leaves_in_the_angles(area):
 def test_angles_known_less_well_than_the_pos_claims_are_named(area):
     results = copy.deepcopy(area)
     results["settings"]["angle_rad"] = 1e-4
-    assert "less well than the POS" not in html.render(document.build(results))
+    assert "less well than the POS" not in html.render(block_document.build(results))
     for row in results["angle_error_summary"]:
         row["median_sigma_rad"] = 3e-4 if row["angle"] == "omega" else 1e-5
-    page = html.render(document.build(results))
+    page = html.render(block_document.build(results))
     assert "Here they give omega only to 300 µrad (0.0172°)" in plain(page)
 
 
