@@ -62,11 +62,21 @@ class PointRays(NamedTuple):
 
     left_ray: _Ints
     right_ray: _Ints
-    by_point: _Ints
     point_offsets: _Ints
     first_ray: _Ints
     n_rays: _Ints
     ray_image: _Ints
+
+
+def matrix_of_parts(parts: _Floats, common: _Ints) -> _Floats:
+    """The matrix (6 n, 6 n), right in its upper triangle, of its parts (c, 6, 6).
+
+    Images without a common point make zeros, most of the matrix: it is put together last.
+    """
+    matrix = np.zeros((len(common), 6, len(common), 6))
+    first, second = np.nonzero(common >= 0)
+    matrix[first, :, second, :] = parts
+    return matrix.reshape(6 * len(common), -1)
 
 
 def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
@@ -133,8 +143,7 @@ def _add_point(
         noise[i, i] = 1.0
     first = points.first_ray[point]
     square_sum = 0.0
-    for place in range(points.point_offsets[point], points.point_offsets[point + 1]):
-        k = points.by_point[place]
+    for k in range(points.point_offsets[point], points.point_offsets[point + 1]):
         for i in range(3):
             row[i], row[6 + i] = observed.by_left_angles[k, i], observed.by_right_angles[k, i]
             row[3 + i], row[9 + i] = -observed.by_base[k, i], observed.by_base[k, i]
@@ -273,13 +282,14 @@ def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
 
 
 @inner_kernel
-def _scatter(local: _Floats, images: _Ints, matrix: _Floats) -> None:
+def _scatter(local: _Floats, images: _Ints, common: _Ints, parts: _Floats) -> None:
     """Add the upper triangle of a point's (6 n, 6 n) matrix to the block's."""
     for i in range(images.shape[0]):
         for j in range(i, images.shape[0]):
+            part = parts[common[images[i], images[j]]]
             for a in range(6):
-                for b in range(a if i == j else 0, 6):
-                    matrix[6 * images[i] + a, 6 * images[j] + b] += local[6 * i + a, 6 * j + b]
+                for b in range(6):
+                    part[a, b] += local[6 * i + a, 6 * j + b]
 
 
 @kernel
@@ -287,6 +297,7 @@ def accumulate_normals(
     observed: Observed,
     pair_precision: _Floats,
     points: PointRays,
+    common: _Ints,
     normals: _Floats,
     right_side: _Floats,
     noise_normals: _Floats,
@@ -300,11 +311,13 @@ def accumulate_normals(
         Of all pairs; the second (N,) from `precision`.
     points
         The points to add; those of the same images are best neighbours.
+    common
+        (n, n) numbers of the pairs of images, as in `coplanarity_pairs.PointPairs`.
     normals, right_side
-        (6 n, 6 n), (6 n,): J'WJ (upper triangle) and J'Wq are added; per image three angles,
-        then three coordinates.
+        (c, 6, 6), (6 n,): J'WJ, as for `matrix_of_parts`, and J'Wq are added; per image three
+        angles, then three coordinates.
     noise_normals
-        (6 n, 6 n): M = G'G (upper triangle) is added, or (0, 0): not wanted.
+        (c, 6, 6): M = G'G is added, or (0, 6, 6): not wanted.
     image_noise
         (m, 2): D'Wq, the part of every ray's image coordinates that makes the parallaxes (its
         negative is the least-squares residual), is written, px.
@@ -342,9 +355,9 @@ def accumulate_normals(
                 _solve_upper(noise, 2 * n, shared, 6 * n)
                 _add_products(shared, 2 * n, 6 * n, local_noise, 1.0)
             point += 1
-        _scatter(local, images, normals)
+        _scatter(local, images, common, normals)
         if with_noise:
-            _scatter(local_noise, images, noise_normals)
+            _scatter(local_noise, images, common, noise_normals)
         for i in range(6 * n):
             right_side[6 * images[i // 6] + i % 6] += right[i]
     return square_sum, noise_trace

@@ -34,20 +34,28 @@ class NormalsFactor:
     def inverse(self) -> _Floats:
         """N^-1 (u, u), both triangles."""
         inverse, _ = lapack.dpotri(self.lower, lower=1)
-        triangle: _Floats = np.asarray(inverse, dtype=float)
-        triangle += np.tril(triangle, -1).T
-        return triangle
+        return mirrored(np.asarray(inverse, dtype=float).T)
+
+
+def mirrored(matrix: _Floats) -> _Floats:
+    """The matrix (u, u) with its upper triangle copied onto the lower one, in place."""
+    for row in range(len(matrix)):
+        matrix[row + 1 :, row] = matrix[row, row + 1 :]
+    return matrix
 
 
 def factorised(normals: _Floats) -> NormalsFactor:
     """Factorise normal equations (u, u), of which the upper triangle is read.
+
+    The factor takes the place of the normal equations: they are large.
 
     Raises
     ------
     GeometryError
         If they are singular or not finite: some unknown is not determined.
     """
-    lower, info = lapack.dpotrf(normals.T, lower=1)  # the transpose needs no reordering
+    # The transpose is in LAPACK's order.
+    lower, info = lapack.dpotrf(normals.T, lower=1, overwrite_a=1)
     if info != 0 or not np.all(np.isfinite(np.diagonal(lower))):
         raise GeometryError("the normal equations are singular: an unknown is not determined")
     return NormalsFactor(lower)
@@ -85,9 +93,10 @@ class Propagation:
             tr(W D D').
         """
         p = self.prior_weights
-        prior_in_noise = float(p @ np.einsum("ij,ji->i", self.noise_gain, self.inverse))
+        prior_in_noise = float(p @ np.einsum("ij,ij->i", self.noise_gain, self.inverse))
         redundancy = noise_trace - float(np.trace(self.noise_gain)) - prior_in_noise
-        prior_part = float(p @ np.diagonal(self.inverse) - p @ (self.inverse**2 @ p))
+        squares = np.einsum("ij,ij,j->i", self.inverse, self.inverse, p)
+        prior_part = float(p @ np.diagonal(self.inverse) - p @ squares)
         if redundancy <= 1e-9 * noise_trace:
             return float("nan")
         return max(weighted_square_sum - prior_part, 0.0) / redundancy
