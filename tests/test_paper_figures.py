@@ -1,4 +1,4 @@
-"""Figures of the paper's reproduction: what they show is what the results say."""
+"""Bars and regressions, as the paper's reproduction draws them, show what the results say."""
 
 import copy
 import re
@@ -7,11 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.textpath import TextPath
 from report_results import ANGLES, area_results
 from scipy import stats
 
 from posstats.reports import figure_parallax
+from posstats.reports.figure_regression import Panel, generalised, ordinary
+from posstats.reports.format import MICRORADIAN
 from posstats.reports.paper_figures import draw_area
 
 N_STRIPS, PER_STRIP = 3, 10
@@ -187,6 +190,18 @@ def test_the_band_is_the_confidence_interval_of_the_line(results, drawn, angle):
     ]
     shown = np.array([np.ptp(y) for y in at_ends]) * abs(to_error[0])
     assert shown == pytest.approx(widths, abs=abs(to_error[0]) * 0.03)
+
+
+def test_among_residuals_the_ols_line_is_zero_and_the_gls_line_their_difference(results):
+    row = _block_row(results, "omega")
+    axis = Figure().add_subplot()
+    panel = Panel(axis, MICRORADIAN, start_s=57000.0)
+    panel.fit([57000.0, 58000.0], ordinary(row), generalised(row), zero=ordinary(row))
+    ols, gls = axis.lines
+    drawn_at = np.asarray(gls.get_xdata()) + 57000.0
+    expected = _line(results, "omega", "gls_")(drawn_at) - _line(results, "omega", "")(drawn_at)
+    assert np.asarray(ols.get_ydata()) == pytest.approx(np.zeros(40), abs=1e-9)
+    assert np.asarray(gls.get_ydata()) == pytest.approx(1e6 * expected, abs=1e-6)
 
 
 def _bands(drawing):
