@@ -189,15 +189,47 @@ class _State:
     weighting: _Weighting
 
 
+@dataclass(frozen=True, eq=False)
+class _Normals:
+    """Parts of J'WJ, J'Wq, parts of M, D'Wq in px, v'Wv, tr(W D D')."""
+
+    normals: _Floats
+    right_side: _Floats
+    noise_normals: _Floats
+    image_noise: _Floats
+    square_sum: float
+    noise_trace: float
+
+    def matrix(self, common: _Ints, prior_weights: _Floats) -> _Floats:
+        """N = J'WJ + P (6 n, 6 n), upper triangle."""
+        matrix = matrix_of_parts(self.normals, common)
+        matrix[np.diag_indices(len(matrix))] += prior_weights
+        return matrix
+
+
 def _improved(
     pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
 ) -> tuple[_State, float]:
     """The state after a Gauss-Newton step, and the step's mean square in standard errors."""
+    weighting, equations = _equations(pairs, priors, frames, state)
+    prior_side = priors.weights * (state.unknowns - priors.values)
+    normals = equations.matrix(pairs.common, priors.weights)
+    step, decrement = _step(normals, -(equations.right_side + prior_side))
+    return _State(state.unknowns + step, equations.image_noise, weighting), decrement
+
+
+def _equations(
+    pairs: PointPairs,
+    priors: Priors,
+    frames: _Floats,
+    state: _State,
+    *,
+    with_noise: bool = False,
+) -> tuple[_Weighting, _Normals]:
+    """Weights and normal equations at a state; the derivatives, by far larger, end here."""
     observed = _linearised(pairs, priors, frames, state)
     weighting = state.weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
-    normals = _normal_equations(pairs, observed, weighting, priors)
-    step, decrement = _step(normals, priors.weights * (state.unknowns - priors.values))
-    return _State(state.unknowns + step, normals.image_noise, weighting), decrement
+    return weighting, _normal_equations(pairs, observed, weighting, with_noise=with_noise)
 
 
 def _linearised(pairs: PointPairs, priors: Priors, frames: _Floats, state: _State) -> Observed:
@@ -211,32 +243,15 @@ def _linearised(pairs: PointPairs, priors: Priors, frames: _Floats, state: _Stat
     return observed
 
 
-@dataclass(frozen=True, eq=False)
-class _Normals:
-    """N with the priors (upper triangle), J'Wq, parts of M, D'Wq in px, v'Wv, tr(W D D')."""
-
-    normals: _Floats
-    right_side: _Floats
-    noise_normals: _Floats
-    image_noise: _Floats
-    square_sum: float
-    noise_trace: float
-
-
 def _normal_equations(
-    pairs: PointPairs,
-    observed: Observed,
-    weighting: _Weighting,
-    priors: Priors,
-    *,
-    with_noise: bool = False,
+    pairs: PointPairs, observed: Observed, weighting: _Weighting, *, with_noise: bool
 ) -> _Normals:
     n_common = int(pairs.common.max()) + 1
     image_noise = np.zeros((len(pairs.ray_image), 2))
     pair_precision = precision(observed.variance, weighting.robust_weight)
 
     def accumulated(points: slice) -> tuple[_Floats, _Floats, _Floats, float, float]:
-        normals, right_side = np.zeros((n_common, 6, 6)), np.zeros(priors.values.size)
+        normals, right_side = np.zeros((n_common, 6, 6)), np.zeros(6 * len(pairs.common))
         noise_normals = np.zeros((n_common if with_noise else 0, 6, 6))
         square_sum, noise_trace = accumulate_normals(
             observed,
@@ -267,10 +282,8 @@ def _normal_equations(
         square_sum += other[3]
         noise_trace += other[4]
     weight = 1.0 / weighting.scale_px**2
-    matrix = matrix_of_parts(weight * normals, pairs.common)
-    matrix[np.diag_indices(len(matrix))] += priors.weights
     return _Normals(
-        normals=matrix,
+        normals=weight * normals,
         right_side=weight * right_side,
         noise_normals=weight**2 * noise_normals,
         image_noise=image_noise,
@@ -286,10 +299,9 @@ def _parts(pairs: PointPairs) -> list[slice]:
     return [part for part in (slice(0, middle), slice(middle, n_points)) if part.start < part.stop]
 
 
-def _step(equations: _Normals, prior_side: _Floats) -> tuple[_Floats, float]:
+def _step(normals: _Floats, right_side: _Floats) -> tuple[_Floats, float]:
     """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
-    right_side = -(equations.right_side + prior_side)
-    step = factorised(equations.normals).solve(right_side)
+    step = factorised(normals).solve(right_side)
     decrement = float(step @ right_side) / step.size
     largest = float(np.abs(step.reshape(-1, 6)[:, :3]).max())
     return step * min(1.0, _LARGEST_STEP_RAD / max(largest, 1e-300)), decrement
@@ -317,9 +329,8 @@ def _propagated(
     pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
 ) -> tuple[Propagation, float]:
     """Error propagation at the solution, and sigma^2 of an image coordinate."""
-    equations = _normal_equations(
-        pairs, _linearised(pairs, priors, frames, state), state.weighting, priors, with_noise=True
-    )
+    _, equations = _equations(pairs, priors, frames, state, with_noise=True)
+    normals = equations.matrix(pairs.common, priors.weights)
     noise_normals = mirrored(matrix_of_parts(equations.noise_normals, pairs.common))
-    propagation = propagated(factorised(equations.normals), noise_normals, priors.weights)
+    propagation = propagated(normals, noise_normals, priors.weights)
     return propagation, propagation.variance_factor(equations.square_sum, equations.noise_trace)

@@ -86,6 +86,24 @@ def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
 
 
 @inner_kernel
+def _six(row: _Floats, first: int) -> _Six:
+    return (
+        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
+    )  # fmt: skip
+
+
+@inner_kernel
+def _add_six(row: _Floats, first: int, factor: float, values: _Six) -> None:
+    """Add a multiple of six numbers to a row, from `first` on."""
+    row[first] += factor * values[0]
+    row[first + 1] += factor * values[1]
+    row[first + 2] += factor * values[2]
+    row[first + 3] += factor * values[3]
+    row[first + 4] += factor * values[4]
+    row[first + 5] += factor * values[5]
+
+
+@inner_kernel
 def _add_pair(
     left: int,
     right: int,
@@ -104,21 +122,19 @@ def _add_pair(
     `by_image` (4,) that of D. Of `normals` only the upper triangle becomes complete.
     """
     last = shared.shape[1] - 1
-    for i in range(12):
-        at = 6 * left + i if i < 6 else 6 * right + i - 6
-        scaled = weight * row[i]
-        right_side[at] += scaled * q
-        if i < 6:
-            for j in range(6):
-                normals[at, 6 * left + j] += scaled * row[j]
-        for j in range(6):
-            normals[at, 6 * right + j] += scaled * row[6 + j]
-        for r in range(2):
-            shared[2 * left + r, at] += scaled * by_image[r]
-            shared[2 * right + r, at] += scaled * by_image[2 + r]
+    a, b = _six(row, 0), _six(row, 6)
+    for i in range(6):
+        scaled_left, scaled_right = weight * row[i], weight * row[6 + i]
+        _add_six(normals[6 * left + i], 6 * left, scaled_left, a)
+        _add_six(normals[6 * left + i], 6 * right, scaled_left, b)
+        _add_six(normals[6 * right + i], 6 * right, scaled_right, b)
+        right_side[6 * left + i] += scaled_left * q
+        right_side[6 * right + i] += scaled_right * q
     for i in range(4):
         at = 2 * left + i if i < 2 else 2 * right + i - 2
         scaled = weight * by_image[i]
+        _add_six(shared[at], 6 * left, scaled, a)
+        _add_six(shared[at], 6 * right, scaled, b)
         shared[at, last] += scaled * q
         for j in range(2):
             noise[at, 2 * left + j] += scaled * by_image[j]
@@ -222,13 +238,6 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
             work[i] = value / factor[i, i]
             total += work[i] * work[i]
     return total
-
-
-@inner_kernel
-def _six(row: _Floats, first: int) -> _Six:
-    return (
-        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
-    )  # fmt: skip
 
 
 @inner_kernel

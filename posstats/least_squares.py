@@ -31,11 +31,6 @@ class NormalsFactor:
         solution, _ = lapack.dpotrs(self.lower, right_side, lower=1)
         return np.asarray(solution, dtype=float)
 
-    def inverse(self) -> _Floats:
-        """N^-1 (u, u), both triangles."""
-        inverse, _ = lapack.dpotri(self.lower, lower=1)
-        return mirrored(np.asarray(inverse, dtype=float).T)
-
 
 def mirrored(matrix: _Floats) -> _Floats:
     """The matrix (u, u) with its upper triangle copied onto the lower one, in place."""
@@ -59,6 +54,12 @@ def factorised(normals: _Floats) -> NormalsFactor:
     if info != 0 or not np.all(np.isfinite(np.diagonal(lower))):
         raise GeometryError("the normal equations are singular: an unknown is not determined")
     return NormalsFactor(lower)
+
+
+def inverted(normals: _Floats) -> _Floats:
+    """N^-1 (u, u), both triangles, in place of N; upper triangle read, errors of `factorised`."""
+    inverse, _ = lapack.dpotri(factorised(normals).lower, lower=1, overwrite_c=1)
+    return mirrored(np.asarray(inverse, dtype=float).T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,19 +110,17 @@ class Propagation:
         return 0.5 * covariance
 
 
-def propagated(
-    factor: NormalsFactor, noise_normals: _Floats, prior_weights: _Floats
-) -> Propagation:
+def propagated(normals: _Floats, noise_normals: _Floats, prior_weights: _Floats) -> Propagation:
     """Error propagation through a solution.
 
     Parameters
     ----------
-    factor
-        Of N = J'WJ + diag(prior_weights).
+    normals
+        (u, u) N = J'WJ + diag(prior_weights), upper triangle; overwritten.
     noise_normals
         (u, u) M = G'G, both triangles.
     prior_weights
         (u,).
     """
-    inverse = factor.inverse()
+    inverse = inverted(normals)
     return Propagation(inverse, prior_weights, noise_gain=inverse @ noise_normals)
