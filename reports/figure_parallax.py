@@ -150,7 +150,7 @@ def bar_figure(groups: Sequence[Bars], strips: Sequence[str], unit: str) -> Figu
     shown = [group for group in groups if group.of_strip]
     strips = [strip for strip in strips if any(strip in group.of_strip for group in shown)]
     labels = [style.shortened(strip) for strip in strips]
-    figure = style.new_figure(2.7 + 0.05 * max(len(label) for label in labels))
+    figure = style.new_figure(2.25 + 0.05 * max(len(label) for label in labels))
     axis = figure.add_subplot()
     style.log_axis(axis, [height for group in shown for height in group.of_strip.values()])
     pitch = len(strips) + max(1.0, 0.15 * len(strips))

@@ -8,8 +8,6 @@ from .figure_parallax import Bars, bar_figure, corrections, held_angles
 from .figure_regression import Panel, generalised, legend_entries, ordinary, used_errors
 from .results_view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
 
-_HOW_TO_READ = "The scale is logarithmic; the numbers are means over all models."
-
 
 def draw_area(area: int, results: Results) -> tuple[style.Drawing, style.Drawing, style.Drawing]:
     """The paper's three figures for one area, in millimetres at image scale and over time.
@@ -35,9 +33,8 @@ def _error_sources(area: int, results: Results) -> style.Drawing:
     figure = bar_figure(bars, strips_with_models(results), "mm")
     every, omega, phi, kappa, none = bars
     caption = (
-        f"Simulated area {area}: mean RMS vertical parallax at image scale, one bar per strip, "
-        "after relative orientation with POS angles of the right image held. "
-        f"{_HOW_TO_READ} Grey is what remains with none held. "
+        f"Simulated area {area}: mean RMS vertical parallax by strip, logarithmic, after relative "
+        "orientation with POS angles of the right image held. Grey: what none held leaves. "
         f"Holding omega alone leaves {_percent(omega, every)} of the parallax with all three "
         f"angles held; holding phi or kappa alone leaves {_percent(phi, none)} and "
         f"{_percent(kappa, none)} of that with none held."
@@ -51,9 +48,8 @@ def _corrected(area: int, results: Results) -> style.Drawing:
     figure = bar_figure(bars, strips_with_models(results), "mm")
     pos, omega, phi, kappa, relative = bars
     caption = (
-        f"Simulated area {area}: mean RMS vertical parallax at image scale, one bar per strip, of "
-        "the POS as delivered, with the regression line of one angle taken off, and after "
-        f"relative orientation. {_HOW_TO_READ} Grey is what relative orientation leaves. "
+        f"Simulated area {area}: mean RMS vertical parallax by strip, logarithmic, from the POS, "
+        "with the line of one angle taken off, and after relative orientation (grey). "
         f"Correcting omega leaves {_percent(omega, pos)} of the parallax of the POS, "
         f"{_percent(omega, relative)} of that of relative orientation; correcting phi leaves "
         f"{_percent(phi, pos)} of that of the POS, and correcting kappa {_percent(kappa, pos)}."
@@ -70,7 +66,7 @@ def _percent(part: Bars, whole: Bars) -> str:
 
 
 def _regression(area: int, results: Results) -> style.Drawing:
-    figure = style.new_figure(4.9)
+    figure = style.new_figure(3.85)
     panels = figure.subplots(len(GROUND_ANGLES), 1, sharex=True)
     for axis, angle in zip(panels, GROUND_ANGLES, strict=True):
         _angle_panel(axis, results, angle)
@@ -81,12 +77,8 @@ def _regression(area: int, results: Results) -> style.Drawing:
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     caption = (
         f"Simulated area {area}: errors of the POS angles (POS minus estimated, ground frame) over "
-        "time, one dot per image, strips by colour. Solid line and dark band: ordinary least "
-        "squares (OLS) over the block with its 95 % confidence band; dashed line and pale band: "
-        "generalised least squares (GLS), which allows for the correlation of the errors; where "
-        "they agree, one line is seen. R² is the share of the variation that time explains, p the "
-        f"probability of so large a slope if there were no drift. {_drifts(results)} "
-        "The unit differs between panels."
+        "time, with line and 95 % band of the block by ordinary (OLS) and generalised least "
+        f"squares (GLS). {_drifts(results)} The unit differs between panels."
     )
     title = f"Simulated area {area}: errors of omega, phi and kappa over time"
     return style.finish(figure, f"area{area}_regression", title, caption)
@@ -103,7 +95,7 @@ def _angle_panel(axis: Axes, results: Results, angle: str) -> None:
     line = _line(results, angle)
     panel.fit([row["time_s"] for row in data], ordinary(line), generalised(line))
     panel.keep_large(errors)
-    panel.label(f"{angle} error")
+    panel.label("error")
     axis.set_title(_test(angle, line), loc="left", pad=14.0 if angle == GROUND_ANGLES[0] else 5.0)
 
 
