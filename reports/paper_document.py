@@ -32,7 +32,7 @@ def build(
     first_page, parts = numbered(opening(found), sections(run, found, figures))
     return ReportDocument(
         title="A published experiment on known truth",
-        subject="Systematic errors of POS angles in three test areas",
+        subject="POS angle errors in three test areas",
         subtitle=_subtitle(run),
         mark=SIMULATED,
         created=created.partition("T")[0],
@@ -66,9 +66,9 @@ def _verdict(run: Reproduction, found: Sequence[Conclusion]) -> str:
         if (each.quantity, each.strip) == ("pos_mean_mm", None)
     )
     return (
-        "The photographs of the paper are not public, so its three test areas are simulated with "
-        f"known errors and analysed by the same chain as any block. {held} of the paper's "
-        f"{len(found)} conclusions hold{except_for}. The mean parallax from the POS is fitted: it "
+        "The photographs of the paper (section 2) are not public, so its three test areas are "
+        "simulated with known errors and analysed by the same chain as any block. "
+        f"{held} of the paper's {len(found)} conclusions hold{except_for}. The mean parallax from the POS is fitted: it "
         f"comes out at {means} of the published one. Regression, error sources, effect of the "
         "correction and check points are predicted, and stand beside the published numbers below. "
         f"This is the run of seed {run.seed}; how often each finding comes out over {n_seeds} "

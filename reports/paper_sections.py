@@ -76,9 +76,13 @@ def _holds(conclusion: Conclusion) -> str:
 
 def _areas(run: Reproduction) -> Part:
     text = (
-        "The paper's photographs are not public. Three areas with the camera, scale, overlaps, "
-        "strips, images, tie points and check points of its Table 1 are simulated instead: exact "
-        "central projection of random points on smooth random terrain, measured with noise, from "
+        "The paper, in Chinese, detects systematic errors of POS angles by relative orientation, "
+        "regresses them on flying time and corrects them, in three areas photographed at 1:78 000, "
+        "1:72 000 and 1:83 000; the copy at hand gives neither title nor authors (source 1 of "
+        "docs/method.md). Its photographs are not public. Three areas with the camera, scale, "
+        "overlaps, strips, images, tie points and check points of its Table 1 are simulated "
+        "instead: exact central projection of random points on smooth random terrain, measured "
+        "with noise, from "
         "orientations that are then given errors. These errors are the only thing that was tuned. "
         "Tables and figures 1 to 4 carry the numbers of the paper; further tables carry letters."
     )

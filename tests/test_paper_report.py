@@ -194,6 +194,22 @@ def test_every_pdf_page_is_numbered_and_marked_as_simulated(pages):
         assert "Simulated data" in text
 
 
+def test_a_table_that_breaks_over_pages_repeats_its_head(pages):
+    """Table 3b has a line for every angle of every strip: more than a page holds."""
+    heads = [number for number, text in enumerate(pages) if re.search(r"F₀\s+p\s+GLS p", text)]
+    assert len(heads) >= 2
+    assert heads == list(range(heads[0], heads[0] + len(heads)))
+    assert sum("Table 3b." in text for text in pages) == 1
+
+
+def test_the_contents_name_the_page_of_every_section(pages):
+    listed = re.findall(r"^\s*(\d+)\s+(\S.*?)[ .]+(\d+)$", pages[0], re.MULTILINE)
+    assert len(listed) == 11
+    for number, title, page_number in listed:
+        heading = re.compile(rf"^\s*{number}\s+{re.escape(title.strip())}\s*$", re.MULTILINE)
+        assert heading.search(pages[int(page_number) - 1]), title
+
+
 def test_the_same_seed_and_date_give_the_same_bytes(folder, tmp_path):
     run_paper(tmp_path / "again")
     files = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
