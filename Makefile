@@ -13,15 +13,14 @@ help:  ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 18
 
 .PHONY: paper
-paper: $(READY)  ## Simulate a small block of the paper's area 1, analyse it, write its report
+paper: $(READY)  ## Repeat the source paper's experiment and write its report
 	@.ci/debian-packages --pango
-	$(BIN)/posstats simulate --scenario area1-small --out $(OUT)/block
-	$(BIN)/posstats analyse $(OUT)/block --out $(OUT)
+	$(BIN)/posstats paper --out $(OUT)
 
 .PHONY: test
 test: $(READY) lint types  ## Run all checks and tests
 	@.ci/debian-packages --pango
-	$(BIN)/pytest -q -n 2
+	$(BIN)/pytest -q -n 2 --dist loadgroup
 
 .PHONY: lint
 lint: $(READY)  ## Check style
@@ -40,6 +39,10 @@ benchmark: $(READY)  ## Time the relative orientation beside PoseLib, and a whol
 .PHONY: coverage
 coverage: $(READY)  ## Simulate the coverage of the regression's intervals (minutes)
 	$(BIN)/python benchmarks/interval_coverage.py
+
+.PHONY: seeds
+seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
+	$(BIN)/python benchmarks/paper_seeds.py
 
 .PHONY: clean
 clean:  ## Remove the environment and all output

@@ -1,20 +1,25 @@
-"""Bundle adjustment of a block of the size of area 1: posstats beside pycolmap.
+"""Bundle adjustment of a block of the size of area 1, and growth with the number of images.
 
-Both solve the same free network (no POS but the first and the last image, which are held) from
-the same start values (POS orientations and their intersections). posstats also computes the
-covariances of all orientations and points, and the redundancy numbers.
+posstats and pycolmap solve the same free network (no POS but the first and the last image, which
+are held) from the same start values (POS orientations and their intersections), to the same sum
+of squares. posstats also computes the covariances of all orientations and points, and the
+redundancy numbers. With --growth blocks of more strips are adjusted with their POS and free
+drifts of the IMU.
 """
 
 import argparse
+import multiprocessing
 import resource
 import statistics
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from posstats.bundle import adjust
 from posstats.bundle_block import bundle_problem
+from posstats.bundle_parameters import IMU_DRIFTS, IMU_SHIFTS, drift_parameters
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
 from posstats.synthetic import load_scenario, simulate
 
@@ -27,6 +32,8 @@ except ModuleNotFoundError:
 
 DOWN = np.diag([1.0, -1.0, -1.0])  # image frame of posstats <-> camera frame of COLMAP
 HELD_M, HELD_RAD = 1e-7, 1e-10
+SEED = 1
+SAME_COST = 1e-9  # relative change of the sum of squares at which pycolmap stops
 
 
 def free_problem(problem: BundleProblem) -> BundleProblem:
@@ -61,9 +68,7 @@ def reconstruction(problem: BundleProblem) -> pycolmap.Reconstruction:
         pose = pycolmap.Rigid3d(pycolmap.Rotation3d(rotation), -rotation @ centre)
         points = [pycolmap.Point2D(xy) for xy in problem.xy_px[rays] * [1.0, -1.0]]
         result.add_image_with_trivial_frame(
-            pycolmap.Image(
-                name=str(image), points2D=points, camera_id=1, image_id=image + 1
-            ),
+            pycolmap.Image(name=str(image), points2D=points, camera_id=1, image_id=image + 1),
             pose,
         )
     bounds = np.searchsorted(problem.point, np.arange(len(problem.ground_m) + 1))
@@ -96,36 +101,99 @@ def options(function_tolerance: float) -> pycolmap.BundleAdjustmentOptions:
     return result
 
 
-def theirs(problem: BundleProblem, function_tolerance: float) -> tuple[np.ndarray, float, str]:
-    """Points, seconds, and what the solver says."""
+class Theirs(NamedTuple):
+    """What pycolmap found: sum of squares in units of ours, points, seconds, iterations."""
+
+    square_sum: float
+    ground_m: np.ndarray
+    seconds: float
+    n_iterations: int
+
+
+def adjusted_by_colmap(problem: BundleProblem, function_tolerance: float) -> Theirs:
     model = reconstruction(problem)
     adjuster = pycolmap.create_default_bundle_adjuster(
         options(function_tolerance), configuration(problem), model
     )
     start = time.perf_counter()
-    summary = adjuster.solve()
+    summary = adjuster.solve().ceres_summary
     seconds = time.perf_counter() - start
     points = model.points3D
-    return np.array([points[i].xyz for i in sorted(points)]), seconds, summary.brief_report()
+    return Theirs(
+        2.0 * summary.final_cost / problem.sigma_px[0] ** 2,
+        np.array([points[i].xyz for i in sorted(points)]),
+        seconds,
+        summary.num_successful_steps + summary.num_unsuccessful_steps,
+    )
 
 
-def timed(problem: BundleProblem, runs: int) -> tuple[AdjustedBundle, list[float]]:
-    adjust(problem)
-    seconds = []
+def adjusted(problem: BundleProblem) -> tuple[AdjustedBundle, float]:
+    start = time.perf_counter()
+    result = adjust(problem)
+    return result, time.perf_counter() - start
+
+
+def compare(runs: int) -> None:
+    problem = free_problem(bundle_problem(simulate(load_scenario("area1"), seed=SEED)))
+    print(f"{len(problem.position_m)} images, {len(problem.ground_m)} points,"
+          f" {len(problem.point)} rays")  # fmt: skip
+    _, first = adjusted(problem)
+    print(f"first call (compiling, or loading what was compiled): {first:.2f} s")
+    ours_s, theirs_s = [], []
     for _ in range(runs):
-        start = time.perf_counter()
-        result = adjust(problem)
-        seconds.append(time.perf_counter() - start)
-    return result, seconds
+        ours, seconds = adjusted(problem)
+        ours_s.append(seconds)
+        theirs = adjusted_by_colmap(problem, SAME_COST)
+        theirs_s.append(theirs.seconds)
+    square_sum = ours.groups["image"].square_sum
+    for name, seconds, n in (("posstats, with covariances", ours_s, ours.n_iterations),
+                             ("pycolmap", theirs_s, theirs.n_iterations)):  # fmt: skip
+        print(f"{name}: median {statistics.median(seconds):.2f} s"
+              f" ({min(seconds):.2f}-{max(seconds):.2f}), {n} iterations")  # fmt: skip
+    print(f"pycolmap's sum of squares above ours: {theirs.square_sum / square_sum - 1.0:.1e}")
+    ratio = statistics.median(theirs_s) / statistics.median(ours_s)
+    print(f"posstats is {ratio:.1f} times as fast as pycolmap (medians)")
+    tight = adjusted_by_colmap(problem, 0.0)
+    print(f"pycolmap iterated to rounding, {tight.n_iterations} iterations: sum of squares above"
+          f" ours {tight.square_sum / square_sum - 1.0:.1e}, largest difference of a point"
+          f" {1e3 * np.abs(tight.ground_m - ours.ground_m).max():.4f} mm")  # fmt: skip
+    print(f"peak memory of this process: {peak_gib():.2f} GiB")
+
+
+def peak_gib() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024**2
+
+
+def grow(n_strips: int) -> None:
+    """Adjust area 1 with other numbers of strips of 60 images, drifts per block and per strip."""
+    scenario = load_scenario("area1")
+    flight = replace(scenario.flight, n_strips=n_strips)
+    block = simulate(replace(scenario, flight=flight), seed=SEED)
+    simulated = peak_gib()
+    for scopes in (("block",), block.orientations.strips):
+        drifts = drift_parameters((*IMU_SHIFTS, *IMU_DRIFTS), scopes)
+        problem = bundle_problem(block, drifts)
+        adjusted(problem)
+        result, seconds = adjusted(problem)
+        print(f"{len(problem.position_m)} images, {len(problem.point)} rays, {len(drifts)} drift"
+              f" parameters: {seconds:.2f} s, {result.n_iterations} iterations,"
+              f" sigma0 {result.sigma0:.3f}, peak {peak_gib():.2f} GiB"
+              f" (simulation alone {simulated:.2f} GiB)")  # fmt: skip
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--growth", action="store_true")
+    arguments = parser.parse_args()
+    if not arguments.growth:
+        compare(arguments.runs)
+        return
+    for n_strips in (5, 15, 50):  # a process each: its peak memory is its own
+        grown = multiprocessing.get_context("spawn").Process(target=grow, args=(n_strips,))
+        grown.start()
+        grown.join()
 
 
 if __name__ == "__main__":
-    problem = free_problem(bundle_problem(simulate(load_scenario("area1"))))
-    ours, seconds = timed(problem, 3)
-    print(seconds, ours.n_iterations, ours.groups, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss/1e6)
-    for tol in (1e-6, 1e-9,1e-14):
-        t=time.perf_counter()
-        X,s,rep=theirs(problem,tol)
-        print(tol,s,rep, time.perf_counter()-t)
-        print(2.0*float(0), np.abs(X-ours.ground_m).max())
-    print(0.5*0.2**2*ours.groups["image"].square_sum)
+    main()

@@ -106,7 +106,8 @@ def check_point_residuals(
         Name of these orientations in the results.
     """
     given = _check_points(block.ground_points)
-    number = {point: k for k, point in enumerate(block.tie_points.point_id)}
+    wanted = set(given.point)
+    number = {point: k for k, point in enumerate(block.tie_points.point_id) if point in wanted}
     points = np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
     computed = intersect(
         block.tie_points,

@@ -21,7 +21,6 @@ _Floats = NDArray[np.float64]
 MAX_ITERATIONS = 50
 _SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together
 _ROUGHLY = 0.1  # mean square step in standard deviations from which on weights are settled
-_ROUNDING = 1e-11  # relative change of a sum of squares that is none
 _FIRST_DAMPING = 1e-4
 _LEAST_DAMPING = 1e-7
 _MOST_DAMPING = 1e8
@@ -104,7 +103,9 @@ class _Iteration:
             state, square = system.step(equations)
             eased = 0.1 * damping if damping > 10.0 * _LEAST_DAMPING else 0.0
             after = system.equations(state, eased)
-            if after.determined.all() and after.cost <= (1.0 + _ROUNDING) * equations.cost:
+            # the sums of squares before and after a settled step differ by rounding only
+            allowed = np.inf if square < _SETTLED**2 else equations.cost
+            if after.determined.all() and after.cost < allowed:
                 return after, square if damping == 0.0 else np.inf
             damping = max(10.0 * damping, _FIRST_DAMPING)
             equations = system.equations(equations.state, damping)

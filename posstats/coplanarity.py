@@ -100,9 +100,10 @@ def y_parallax(
 
 @kernel
 def y_parallax_derivatives(
-    left_vectors: _Floats,
-    right_vectors: _Floats,
-    offsets: _Ints,
+    vectors: _Floats,
+    left_ray: _Ints,
+    right_ray: _Ints,
+    pair: _Ints,
     base_from_left: _Floats,
     base_from_right: _Floats,
     left_derivatives: _Floats,
@@ -111,8 +112,14 @@ def y_parallax_derivatives(
 ) -> tuple[_Floats, _Floats, _Floats, _Floats, _Floats]:
     """y-parallax and its derivatives for every point pair.
 
-    Parameters are those of `y_parallax`, with
-
+    Parameters
+    ----------
+    vectors
+        (m, 3) image vectors (x, y, -c) in px of the rays.
+    left_ray, right_ray, pair
+        (N,) the rays and the pair of images of every point pair, in any order.
+    base_from_left, base_from_right, base
+        As in `y_parallax`.
     left_derivatives, right_derivatives
         (P, 3, 3, 3) derivatives of base_from_left and base_from_right with respect to the
         three angles of the image.
@@ -128,22 +135,20 @@ def y_parallax_derivatives(
     by_image
         (N, 4) with respect to x, y of the left and x, y of the right image point.
     """
-    n = left_vectors.shape[0]
+    n = len(pair)
     q = np.empty(n)
     by_left, by_right, by_base = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     by_image = np.empty((n, 4))
-    for pair in range(offsets.shape[0] - 1):
-        left, right = base_from_left[pair], base_from_right[pair]
-        for k in range(offsets[pair], offsets[pair + 1]):
-            a, b = rotated(left, left_vectors[k]), rotated(right, right_vectors[k])
-            q[k], da, db, dbase = parallax_gradients(a, b, base[pair])
-            for angle in range(3):
-                by_base[k, angle] = dbase[angle]
-                turned_left = rotated(left_derivatives[pair, angle], left_vectors[k])
-                turned_right = rotated(right_derivatives[pair, angle], right_vectors[k])
-                by_left[k, angle] = dot(da, turned_left)
-                by_right[k, angle] = dot(db, turned_right)
-            for axis in range(2):
-                by_image[k, axis] = dot(da, left[:, axis])
-                by_image[k, axis + 2] = dot(db, right[:, axis])
+    for k in range(n):
+        p, left_vector, right_vector = pair[k], vectors[left_ray[k]], vectors[right_ray[k]]
+        left, right = base_from_left[p], base_from_right[p]
+        a, b = rotated(left, left_vector), rotated(right, right_vector)
+        q[k], da, db, dbase = parallax_gradients(a, b, base[p])
+        for angle in range(3):
+            by_base[k, angle] = dbase[angle]
+            by_left[k, angle] = dot(da, rotated(left_derivatives[p, angle], left_vector))
+            by_right[k, angle] = dot(db, rotated(right_derivatives[p, angle], right_vector))
+        for axis in range(2):
+            by_image[k, axis] = dot(da, left[:, axis])
+            by_image[k, axis + 2] = dot(db, right[:, axis])
     return q, by_left, by_right, by_base, by_image

@@ -17,16 +17,22 @@ from numpy.typing import NDArray
 
 from posstats.coplanarity import base_frames
 from posstats.coplanarity_linearised import linearised
-from posstats.coplanarity_normals import Observed, PointRays, accumulate_normals, precision
+from posstats.coplanarity_normals import (
+    Observed,
+    PointRays,
+    accumulate_normals,
+    matrix_of_parts,
+    precision,
+)
 from posstats.coplanarity_pairs import PointPairs
 from posstats.errors import ConvergenceError, GeometryError
-from posstats.least_squares import factorised, propagated
+from posstats.least_squares import Propagation, factorised, mirrored, propagated
 from posstats.rotation import AngleSystem
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
 
-MAX_IMAGES = 1500  # some seven dense matrices of (6 n)^2 numbers at once: 4.5 GB
+MAX_IMAGES = 1500  # some five dense matrices of (6 n)^2 numbers at once: 3.2 GB
 MAX_ITERATIONS = 60
 _HUBER = 1.345
 _REJECTION = 3.5
@@ -127,25 +133,19 @@ def adjust(
             f" {n_images}: divide it, or use an adjusted orientation as the source of the errors"
         )
     frames = base_frames(priors.position_m[pairs.right] - priors.position_m[pairs.left])
-    weighting = _Weighting("reweight" if robust else "plain", robust, np.ones(len(pairs.left_ray)))
-    unknowns, image_noise = priors.values, np.zeros((len(pairs.ray_image), 2))
+    weighting = _Weighting("reweight" if robust else "plain", robust, np.ones(len(pairs.pair)))
+    state = _State(priors.values, np.zeros((len(pairs.ray_image), 2)), weighting)
     for count in range(1, MAX_ITERATIONS + 1):
-        observed = _finite(
-            linearised(pairs, unknowns.reshape(-1, 6), image_noise, frames, priors.system)
-        )
-        weighting = weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
-        normals = _normal_equations(pairs, observed, weighting, priors)
-        step, decrement = _step(normals, priors.weights * (unknowns - priors.values))
-        unknowns, image_noise = unknowns + step, normals.image_noise
+        state, decrement = _improved(pairs, priors, frames, state)
         if progress is not None:
             progress(count, MAX_ITERATIONS)
-        if weighting.phase == "fixed" and decrement < _SETTLED["fixed"]:
-            return _result(pairs, priors, unknowns, image_noise, frames, weighting, count)
-        weighting = weighting.advanced(decrement)
+        if state.weighting.phase == "fixed" and decrement < _SETTLED["fixed"]:
+            return _result(pairs, priors, frames, state, count)
+        state = replace(state, weighting=state.weighting.advanced(decrement))
     raise ConvergenceError(
         f"the coplanarity adjustment did not settle in {MAX_ITERATIONS} steps (y-parallax still"
-        f" {weighting.scale_px:.3g} px): check the angles, their system and the strips (a strip"
-        " without a neighbour, flown with a coarse POS, leaves its roll open)"
+        f" {state.weighting.scale_px:.3g} px): check the angles, their system and the strips (a"
+        " strip without a neighbour, flown with a coarse POS, leaves its roll open)"
     )
 
 
@@ -180,18 +180,18 @@ class _Weighting:
         return replace(self, phase=_NEXT[self.phase])
 
 
-def _finite(observed: Observed) -> Observed:
-    if not np.all(np.isfinite(observed.q)):
-        raise ConvergenceError(
-            "the coplanarity adjustment left the geometry of vertical photographs (infinite"
-            " y-parallax): check the angles, their system and the positions"
-        )
-    return observed
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Where the iteration stands: unknowns (6 n,), noise of the image points (m, 2), weights."""
+
+    unknowns: _Floats
+    image_noise: _Floats
+    weighting: _Weighting
 
 
 @dataclass(frozen=True, eq=False)
 class _Normals:
-    """N with the priors (upper triangle), J'Wq, M, D'Wq in px, v'Wv, tr(W D D')."""
+    """Parts of J'WJ, J'Wq, parts of M, D'Wq in px, v'Wv, tr(W D D')."""
 
     normals: _Floats
     right_side: _Floats
@@ -200,34 +200,71 @@ class _Normals:
     square_sum: float
     noise_trace: float
 
+    def matrix(self, common: _Ints, prior_weights: _Floats) -> _Floats:
+        """N = J'WJ + P (6 n, 6 n), upper triangle."""
+        matrix = matrix_of_parts(self.normals, common)
+        matrix[np.diag_indices(len(matrix))] += prior_weights
+        return matrix
 
-def _normal_equations(
+
+def _improved(
+    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
+) -> tuple[_State, float]:
+    """The state after a Gauss-Newton step, and the step's mean square in standard errors."""
+    weighting, equations = _equations(pairs, priors, frames, state)
+    prior_side = priors.weights * (state.unknowns - priors.values)
+    normals = equations.matrix(pairs.common, priors.weights)
+    step, decrement = _step(normals, -(equations.right_side + prior_side))
+    return _State(state.unknowns + step, equations.image_noise, weighting), decrement
+
+
+def _equations(
     pairs: PointPairs,
-    observed: Observed,
-    weighting: _Weighting,
     priors: Priors,
+    frames: _Floats,
+    state: _State,
     *,
     with_noise: bool = False,
+) -> tuple[_Weighting, _Normals]:
+    """Weights and normal equations at a state; the derivatives, by far larger, end here."""
+    observed = _linearised(pairs, priors, frames, state)
+    weighting = state.weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
+    return weighting, _normal_equations(pairs, observed, weighting, with_noise=with_noise)
+
+
+def _linearised(pairs: PointPairs, priors: Priors, frames: _Floats, state: _State) -> Observed:
+    unknowns = state.unknowns.reshape(-1, 6)
+    observed = linearised(pairs, unknowns, state.image_noise, frames, priors.system)
+    if not np.all(np.isfinite(observed.q)):
+        raise ConvergenceError(
+            "the coplanarity adjustment left the geometry of vertical photographs (infinite"
+            " y-parallax): check the angles, their system and the positions"
+        )
+    return observed
+
+
+def _normal_equations(
+    pairs: PointPairs, observed: Observed, weighting: _Weighting, *, with_noise: bool
 ) -> _Normals:
-    size = priors.values.size
+    n_common = int(pairs.common.max()) + 1
     image_noise = np.zeros((len(pairs.ray_image), 2))
     pair_precision = precision(observed.variance, weighting.robust_weight)
 
     def accumulated(points: slice) -> tuple[_Floats, _Floats, _Floats, float, float]:
-        normals, right_side = np.zeros((size, size)), np.zeros(size)
-        noise_normals = np.zeros((size, size) if with_noise else (0, 0))
+        normals, right_side = np.zeros((n_common, 6, 6)), np.zeros(6 * len(pairs.common))
+        noise_normals = np.zeros((n_common if with_noise else 0, 6, 6))
         square_sum, noise_trace = accumulate_normals(
             observed,
             pair_precision,
             PointRays(
                 pairs.left_ray,
                 pairs.right_ray,
-                pairs.by_point,
                 pairs.point_offsets[points.start : points.stop + 1],
                 pairs.first_ray[points],
                 pairs.n_rays[points],
                 pairs.ray_image,
             ),
+            pairs.common,
             normals,
             right_side,
             noise_normals,
@@ -245,13 +282,10 @@ def _normal_equations(
         square_sum += other[3]
         noise_trace += other[4]
     weight = 1.0 / weighting.scale_px**2
-    normals *= weight
-    normals[np.diag_indices(size)] += priors.weights
-    noise_normals *= weight**2
     return _Normals(
-        normals=normals,
+        normals=weight * normals,
         right_side=weight * right_side,
-        noise_normals=noise_normals + np.triu(noise_normals, 1).T,
+        noise_normals=weight**2 * noise_normals,
         image_noise=image_noise,
         square_sum=weight * square_sum,
         noise_trace=weight * noise_trace,
@@ -261,41 +295,42 @@ def _normal_equations(
 def _parts(pairs: PointPairs) -> list[slice]:
     """Points in two parts of equal numbers of pairs: the same sums on every machine."""
     n_points = len(pairs.first_ray)
-    middle = int(np.searchsorted(pairs.point_offsets, len(pairs.by_point) // 2))
+    middle = int(np.searchsorted(pairs.point_offsets, len(pairs.pair) // 2))
     return [part for part in (slice(0, middle), slice(middle, n_points)) if part.start < part.stop]
 
 
-def _step(equations: _Normals, prior_side: _Floats) -> tuple[_Floats, float]:
+def _step(normals: _Floats, right_side: _Floats) -> tuple[_Floats, float]:
     """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
-    right_side = -(equations.right_side + prior_side)
-    step = factorised(equations.normals).solve(right_side)
+    step = factorised(normals).solve(right_side)
     decrement = float(step @ right_side) / step.size
     largest = float(np.abs(step.reshape(-1, 6)[:, :3]).max())
     return step * min(1.0, _LARGEST_STEP_RAD / max(largest, 1e-300)), decrement
 
 
 def _result(
-    pairs: PointPairs,
-    priors: Priors,
-    unknowns: _Floats,
-    image_noise: _Floats,
-    frames: _Floats,
-    weighting: _Weighting,
-    count: int,
+    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State, count: int
 ) -> AdjustedBlock:
-    observed = linearised(pairs, unknowns.reshape(-1, 6), image_noise, frames, priors.system)
-    equations = _normal_equations(pairs, observed, weighting, priors, with_noise=True)
-    propagation = propagated(factorised(equations.normals), equations.noise_normals, priors.weights)
-    sigma2 = propagation.variance_factor(equations.square_sum, equations.noise_trace)
+    propagation, sigma2 = _propagated(pairs, priors, frames, state)
     n = len(priors.angles_rad)
     angles = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()
     believed = priors.image_px**2 if np.isnan(sigma2) else sigma2
-    estimate = unknowns.reshape(n, 6)
+    estimate = state.unknowns.reshape(n, 6)
     return AdjustedBlock(
         angles_rad=estimate[:, :3],
         position_m=estimate[:, 3:],
         covariance_rad2=propagation.covariance(believed, angles).reshape(n, 3, n, 3),
         sigma_px=float(np.sqrt(sigma2)),
-        rejected=weighting.robust_weight == 0.0,
+        rejected=state.weighting.robust_weight == 0.0,
         n_iterations=count,
     )
+
+
+def _propagated(
+    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
+) -> tuple[Propagation, float]:
+    """Error propagation at the solution, and sigma^2 of an image coordinate."""
+    _, equations = _equations(pairs, priors, frames, state, with_noise=True)
+    normals = equations.matrix(pairs.common, priors.weights)
+    noise_normals = mirrored(matrix_of_parts(equations.noise_normals, pairs.common))
+    propagation = propagated(normals, noise_normals, priors.weights)
+    return propagation, propagation.variance_factor(equations.square_sum, equations.noise_trace)

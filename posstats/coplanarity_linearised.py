@@ -28,7 +28,7 @@ def refer_to_measurements(
     image_noise: _Floats,
     left_ray: _Ints,
     right_ray: _Ints,
-    offsets: _Ints,
+    pair: _Ints,
     frames: _Floats,
 ) -> _Floats:
     """Carry q (N,) from image points freed of noise to the measured ones, in place.
@@ -37,15 +37,13 @@ def refer_to_measurements(
     ground frame, in place. `image_noise` (m, 2) belongs to the rays. Returns diag(D D') (N,).
     """
     variance = np.empty(len(q))
-    for pair in range(len(offsets) - 1):
-        frame = frames[pair]
-        for k in range(offsets[pair], offsets[pair + 1]):
-            left, right, d = image_noise[left_ray[k]], image_noise[right_ray[k]], by_image[k]
-            q[k] += d[0] * left[0] + d[1] * left[1] + d[2] * right[0] + d[3] * right[1]
-            variance[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
-            x, y, z = by_base[k]
-            for axis in range(3):
-                by_base[k, axis] = x * frame[0, axis] + y * frame[1, axis] + z * frame[2, axis]
+    for k in range(len(q)):
+        left, right, d = image_noise[left_ray[k]], image_noise[right_ray[k]], by_image[k]
+        q[k] += d[0] * left[0] + d[1] * left[1] + d[2] * right[0] + d[3] * right[1]
+        variance[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
+        frame, (x, y, z) = frames[pair[k]], by_base[k]
+        for axis in range(3):
+            by_base[k, axis] = x * frame[0, axis] + y * frame[1, axis] + z * frame[2, axis]
     return variance
 
 
@@ -69,9 +67,10 @@ def linearised(
     derivative = rotation_derivatives(unknowns[:, :3], system)
     base = unknowns[pairs.right, 3:] - unknowns[pairs.left, 3:]
     q, by_left, by_right, by_base, by_image = y_parallax_derivatives(
-        vectors[pairs.left_ray],
-        vectors[pairs.right_ray],
-        pairs.offsets,
+        vectors,
+        pairs.left_ray,
+        pairs.right_ray,
+        pairs.pair,
         frames @ rotation[pairs.left],
         frames @ rotation[pairs.right],
         frames[:, None] @ derivative[pairs.left],
@@ -79,6 +78,6 @@ def linearised(
         np.einsum("pij,pj->pi", frames, base),
     )
     variance = refer_to_measurements(
-        q, by_base, by_image, image_noise, pairs.left_ray, pairs.right_ray, pairs.offsets, frames
+        q, by_base, by_image, image_noise, pairs.left_ray, pairs.right_ray, pairs.pair, frames
     )
     return Observed(q, by_left, by_right, by_base, by_image, variance)

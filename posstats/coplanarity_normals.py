@@ -62,17 +62,45 @@ class PointRays(NamedTuple):
 
     left_ray: _Ints
     right_ray: _Ints
-    by_point: _Ints
     point_offsets: _Ints
     first_ray: _Ints
     n_rays: _Ints
     ray_image: _Ints
 
 
+def matrix_of_parts(parts: _Floats, common: _Ints) -> _Floats:
+    """The matrix (6 n, 6 n), right in its upper triangle, of its parts (c, 6, 6).
+
+    Images without a common point make zeros, most of the matrix: it is put together last.
+    """
+    matrix = np.zeros((len(common), 6, len(common), 6))
+    first, second = np.nonzero(common >= 0)
+    matrix[first, :, second, :] = parts
+    return matrix.reshape(6 * len(common), -1)
+
+
 def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
     """(N,) diagonal of L^-1 from d = diag(D D') (N,) and the robust weights (N,) in [0, 1]."""
     result: _Floats = robust_weight / (variance * (1.0 - robust_weight * (1.0 - RIDGE)))
     return result
+
+
+@inner_kernel
+def _six(row: _Floats, first: int) -> _Six:
+    return (
+        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
+    )  # fmt: skip
+
+
+@inner_kernel
+def _add_six(row: _Floats, first: int, factor: float, values: _Six) -> None:
+    """Add a multiple of six numbers to a row, from `first` on."""
+    row[first] += factor * values[0]
+    row[first + 1] += factor * values[1]
+    row[first + 2] += factor * values[2]
+    row[first + 3] += factor * values[3]
+    row[first + 4] += factor * values[4]
+    row[first + 5] += factor * values[5]
 
 
 @inner_kernel
@@ -94,21 +122,19 @@ def _add_pair(
     `by_image` (4,) that of D. Of `normals` only the upper triangle becomes complete.
     """
     last = shared.shape[1] - 1
-    for i in range(12):
-        at = 6 * left + i if i < 6 else 6 * right + i - 6
-        scaled = weight * row[i]
-        right_side[at] += scaled * q
-        if i < 6:
-            for j in range(6):
-                normals[at, 6 * left + j] += scaled * row[j]
-        for j in range(6):
-            normals[at, 6 * right + j] += scaled * row[6 + j]
-        for r in range(2):
-            shared[2 * left + r, at] += scaled * by_image[r]
-            shared[2 * right + r, at] += scaled * by_image[2 + r]
+    a, b = _six(row, 0), _six(row, 6)
+    for i in range(6):
+        scaled_left, scaled_right = weight * row[i], weight * row[6 + i]
+        _add_six(normals[6 * left + i], 6 * left, scaled_left, a)
+        _add_six(normals[6 * left + i], 6 * right, scaled_left, b)
+        _add_six(normals[6 * right + i], 6 * right, scaled_right, b)
+        right_side[6 * left + i] += scaled_left * q
+        right_side[6 * right + i] += scaled_right * q
     for i in range(4):
         at = 2 * left + i if i < 2 else 2 * right + i - 2
         scaled = weight * by_image[i]
+        _add_six(shared[at], 6 * left, scaled, a)
+        _add_six(shared[at], 6 * right, scaled, b)
         shared[at, last] += scaled * q
         for j in range(2):
             noise[at, 2 * left + j] += scaled * by_image[j]
@@ -133,8 +159,7 @@ def _add_point(
         noise[i, i] = 1.0
     first = points.first_ray[point]
     square_sum = 0.0
-    for place in range(points.point_offsets[point], points.point_offsets[point + 1]):
-        k = points.by_point[place]
+    for k in range(points.point_offsets[point], points.point_offsets[point + 1]):
         for i in range(3):
             row[i], row[6 + i] = observed.by_left_angles[k, i], observed.by_right_angles[k, i]
             row[3 + i], row[9 + i] = -observed.by_base[k, i], observed.by_base[k, i]
@@ -216,6 +241,37 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 
 
 @inner_kernel
+<<<<<<< HEAD
+=======
+def _plus(c: _Six, f: float, w: _Six) -> _Six:
+    return (
+        c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
+        c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
+    )  # fmt: skip
+
+
+@inner_kernel
+def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
+    """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
+
+    rows: (n, width) leading part. Two rows of a block at a time are summed in registers.
+    """
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for first in range(0, width, 6):
+        for second in range(first, width, 6):
+            for i in range(first, first + 6, 2):
+                upper, lower = zero, zero
+                for r in range(n):
+                    row = _six(rows[r], second)
+                    upper = _plus(upper, rows[r, i], row)
+                    lower = _plus(lower, rows[r, i + 1], row)
+                for j in range(6):
+                    matrix[i, second + j] += sign * upper[j]
+                    matrix[i + 1, second + j] += sign * lower[j]
+
+
+@inner_kernel
+>>>>>>> main
 def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
     """Take (C^-1 H)'(C^-1 g) from the right side; |C^-1 g|^2 is returned."""
     width = right_side.shape[0]
@@ -238,13 +294,14 @@ def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
 
 
 @inner_kernel
-def _scatter(local: _Floats, images: _Ints, matrix: _Floats) -> None:
+def _scatter(local: _Floats, images: _Ints, common: _Ints, parts: _Floats) -> None:
     """Add the upper triangle of a point's (6 n, 6 n) matrix to the block's."""
     for i in range(images.shape[0]):
         for j in range(i, images.shape[0]):
+            part = parts[common[images[i], images[j]]]
             for a in range(6):
-                for b in range(a if i == j else 0, 6):
-                    matrix[6 * images[i] + a, 6 * images[j] + b] += local[6 * i + a, 6 * j + b]
+                for b in range(6):
+                    part[a, b] += local[6 * i + a, 6 * j + b]
 
 
 @kernel
@@ -252,6 +309,7 @@ def accumulate_normals(
     observed: Observed,
     pair_precision: _Floats,
     points: PointRays,
+    common: _Ints,
     normals: _Floats,
     right_side: _Floats,
     noise_normals: _Floats,
@@ -265,11 +323,13 @@ def accumulate_normals(
         Of all pairs; the second (N,) from `precision`.
     points
         The points to add; those of the same images are best neighbours.
+    common
+        (n, n) numbers of the pairs of images, as in `coplanarity_pairs.PointPairs`.
     normals, right_side
-        (6 n, 6 n), (6 n,): J'WJ (upper triangle) and J'Wq are added; per image three angles,
-        then three coordinates.
+        (c, 6, 6), (6 n,): J'WJ, as for `matrix_of_parts`, and J'Wq are added; per image three
+        angles, then three coordinates.
     noise_normals
-        (6 n, 6 n): M = G'G (upper triangle) is added, or (0, 0): not wanted.
+        (c, 6, 6): M = G'G is added, or (0, 6, 6): not wanted.
     image_noise
         (m, 2): D'Wq, the part of every ray's image coordinates that makes the parallaxes (its
         negative is the least-squares residual), is written, px.
@@ -307,9 +367,9 @@ def accumulate_normals(
                 _solve_upper(noise, 2 * n, shared, 6 * n)
                 add_products(shared, 2 * n, 6 * n, local_noise, 1.0)
             point += 1
-        _scatter(local, images, normals)
+        _scatter(local, images, common, normals)
         if with_noise:
-            _scatter(local_noise, images, noise_normals)
+            _scatter(local_noise, images, common, noise_normals)
         for i in range(6 * n):
             right_side[6 * images[i // 6] + i % 6] += right[i]
     return square_sum, noise_trace

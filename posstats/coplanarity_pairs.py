@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations
+from posstats.block import Block, Orientations, TiePoints
 from posstats.stereo import ImagePairs, image_vectors
 
 _Floats = NDArray[np.float64]
@@ -16,39 +16,40 @@ SHORTEST_BASE = 3.0  # in standard deviations of the base
 
 @dataclass(frozen=True, eq=False)
 class PointPairs:
-    """N point pairs of p image pairs, and how they hang together in g points.
+    """N point pairs of p image pairs, point after point of g points.
 
     Attributes
     ----------
     left, right
         (p,) images.
-    offsets
-        (p + 1,) first point pair of each image pair, and N.
+    pair
+        (N,) number of the image pair of every point pair.
     left_ray, right_ray
         (N,) rays, numbered point after point.
     ray_vectors
         (m, 3) image vectors (x, y, -c) of the rays, px.
     ray_image
         (m,) image of every ray, ascending within a point.
-    by_point
-        (N,) order of the point pairs that makes those of one point neighbours.
     point_offsets
-        (g + 1,) first place of each point in `by_point`, and N.
+        (g + 1,) first point pair of each point, and N.
     first_ray, n_rays
         (g,) the rays of each point. Points that the same images see are neighbours, mostly.
+    common
+        (n, n) number of each pair i <= j of the n images that see a common point, in order of i,
+        then j; -1 for the others.
     """
 
     left: _Ints
     right: _Ints
-    offsets: _Ints
+    pair: _Ints
     left_ray: _Ints
     right_ray: _Ints
     ray_vectors: _Floats
     ray_image: _Ints
-    by_point: _Ints
     point_offsets: _Ints
     first_ray: _Ints
     n_rays: _Ints
+    common: _Ints
 
     def n_points_of_images(self, n_images: int) -> _Ints:
         """(n_images,) number of points that each image has in common with another one."""
@@ -68,19 +69,30 @@ def point_pairs(block: Block, pairs: ImagePairs) -> PointPairs:
     order = _alike_together(np.flatnonzero(counts), first_ray, n_rays, ties.image)
     rank = np.empty(n_points, dtype=np.intp)
     rank[order] = np.arange(len(order))
+    by_point = np.argsort(rank[point], kind="stable")
     return PointPairs(
         left=pairs.left,
         right=pairs.right,
-        offsets=pairs.offsets,
-        left_ray=pairs.left_ray,
-        right_ray=pairs.right_ray,
+        pair=pairs.pair_of_point[by_point],
+        left_ray=pairs.left_ray[by_point],
+        right_ray=pairs.right_ray[by_point],
         ray_vectors=image_vectors(ties, block.orientations, block.cameras),
         ray_image=ties.image,
-        by_point=np.argsort(rank[point], kind="stable"),
         point_offsets=np.concatenate([[0], np.cumsum(counts[order])]).astype(np.intp),
         first_ray=first_ray[order],
         n_rays=n_rays[order],
+        common=_common(ties, len(block.orientations)),
     )
+
+
+def _common(ties: TiePoints, n_images: int) -> _Ints:
+    """Number (n, n) the pairs of images of one point, those of an image with itself among them."""
+    shared = np.zeros((n_images, n_images), dtype=bool)
+    for shift in range(int(np.bincount(ties.point).max(initial=0))):
+        last = len(ties) - shift
+        same = ties.point[:last] == ties.point[shift:]
+        shared[ties.image[:last][same], ties.image[shift:][same]] = True
+    return np.where(shared, np.cumsum(shared).reshape(shared.shape) - 1, -1)
 
 
 def _alike_together(points: _Ints, first_ray: _Ints, n_rays: _Ints, ray_image: _Ints) -> _Ints:

@@ -31,26 +31,35 @@ class NormalsFactor:
         solution, _ = lapack.dpotrs(self.lower, right_side, lower=1)
         return np.asarray(solution, dtype=float)
 
-    def inverse(self) -> _Floats:
-        """N^-1 (u, u), both triangles."""
-        inverse, _ = lapack.dpotri(self.lower, lower=1)
-        triangle: _Floats = np.asarray(inverse, dtype=float)
-        triangle += np.tril(triangle, -1).T
-        return triangle
+
+def mirrored(matrix: _Floats) -> _Floats:
+    """The matrix (u, u) with its upper triangle copied onto the lower one, in place."""
+    for row in range(len(matrix)):
+        matrix[row + 1 :, row] = matrix[row, row + 1 :]
+    return matrix
 
 
 def factorised(normals: _Floats) -> NormalsFactor:
     """Factorise normal equations (u, u), of which the upper triangle is read.
+
+    The factor takes the place of the normal equations: they are large.
 
     Raises
     ------
     GeometryError
         If they are singular or not finite: some unknown is not determined.
     """
-    lower, info = lapack.dpotrf(normals.T, lower=1)  # the transpose needs no reordering
+    # The transpose is in LAPACK's order.
+    lower, info = lapack.dpotrf(normals.T, lower=1, overwrite_a=1)
     if info != 0 or not np.all(np.isfinite(np.diagonal(lower))):
         raise GeometryError("the normal equations are singular: an unknown is not determined")
     return NormalsFactor(lower)
+
+
+def inverted(normals: _Floats) -> _Floats:
+    """N^-1 (u, u), both triangles, in place of N; upper triangle read, errors of `factorised`."""
+    inverse, _ = lapack.dpotri(factorised(normals).lower, lower=1, overwrite_c=1)
+    return mirrored(np.asarray(inverse, dtype=float).T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +94,10 @@ class Propagation:
             tr(W D D').
         """
         p = self.prior_weights
-        prior_in_noise = float(p @ np.einsum("ij,ji->i", self.noise_gain, self.inverse))
+        prior_in_noise = float(p @ np.einsum("ij,ij->i", self.noise_gain, self.inverse))
         redundancy = noise_trace - float(np.trace(self.noise_gain)) - prior_in_noise
-        prior_part = float(p @ np.diagonal(self.inverse) - p @ (self.inverse**2 @ p))
+        squares = np.einsum("ij,ij,j->i", self.inverse, self.inverse, p)
+        prior_part = float(p @ np.diagonal(self.inverse) - p @ squares)
         if redundancy <= 1e-9 * noise_trace:
             return float("nan")
         return max(weighted_square_sum - prior_part, 0.0) / redundancy
@@ -100,19 +110,17 @@ class Propagation:
         return 0.5 * covariance
 
 
-def propagated(
-    factor: NormalsFactor, noise_normals: _Floats, prior_weights: _Floats
-) -> Propagation:
+def propagated(normals: _Floats, noise_normals: _Floats, prior_weights: _Floats) -> Propagation:
     """Error propagation through a solution.
 
     Parameters
     ----------
-    factor
-        Of N = J'WJ + diag(prior_weights).
+    normals
+        (u, u) N = J'WJ + diag(prior_weights), upper triangle; overwritten.
     noise_normals
         (u, u) M = G'G, both triangles.
     prior_weights
         (u,).
     """
-    inverse = factor.inverse()
+    inverse = inverted(normals)
     return Propagation(inverse, prior_weights, noise_gain=inverse @ noise_normals)

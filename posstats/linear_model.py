@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-import statsmodels.api as sm
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from statsmodels.regression.linear_model import OLS  # statsmodels.api imports much else
 
 from posstats.reml import variance_components
 
@@ -66,7 +66,7 @@ class LinearFit:
 
 def ordinary_least_squares(y: _Floats, design: _Floats) -> LinearFit:
     """OLS of y (n,) on the columns of `design` (n, k), n > k."""
-    fit = sm.OLS(y, design).fit(method="qr")
+    fit = OLS(y, design).fit(method="qr")
     return LinearFit(
         coefficients=fit.params,
         covariance=fit.cov_params(),
@@ -111,7 +111,7 @@ def generalised_least_squares(
     total = known + sum(v * g for v, g in zip(components.variance, shapes, strict=False))
     root = np.linalg.cholesky(total)
     whitened = solve_triangular(root, design, lower=True)
-    fit = sm.OLS(solve_triangular(root, y, lower=True), whitened).fit(method="qr")
+    fit = OLS(solve_triangular(root, y, lower=True), whitened).fit(method="qr")
     covariance = fit.normalized_cov_params
     spread = components.covariance[: len(factors), : len(factors)]
     # Column j of `gain` = V^-1 X Phi makes coefficient j of y.

@@ -9,6 +9,9 @@ from posstats.stereo import MIN_MODEL_POINTS, StereoModels
 
 _Floats = NDArray[np.float64]
 
+NOTICEABLE = 0.10
+"""Relative change of a mean parallax from which it is worth a word."""
+
 
 @dataclass(frozen=True)
 class StripParallax:

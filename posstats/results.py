@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from posstats import __version__
 from posstats.analysis import Analysis
-from posstats.parallax import block_statistics
+from posstats.parallax import NOTICEABLE, block_statistics
 from posstats.relative_orientation import RelativeOrientation
 from posstats.result_rows import (
     accuracy_row,
@@ -168,13 +168,13 @@ def _cause(analysis: Analysis) -> Row:
     """The angle that keeps the parallax when it is held, and its share among the three.
 
     An angle is named when holding it keeps more parallax than holding either other angle and
-    both together, and holding all three keeps more than relative orientation leaves anyway.
+    both together, and holding all three keeps noticeably more than relative orientation leaves.
     """
     least = _mean_px(analysis, analysis.dependent)
     kept = {name: _mean_px(analysis, each) - least for name, each in analysis.fixed.items()}
     all_held = kept.pop("angles")
     worst = max(kept, key=lambda angle: kept[angle])
-    named = all_held > least and kept[worst] > 0.5 * sum(kept.values())
+    named = all_held > NOTICEABLE * least and kept[worst] > 0.5 * sum(kept.values())
     return {
         "cause": worst if named else None,
         "cause_share": kept[worst] / sum(kept.values()) if named else None,

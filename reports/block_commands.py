@@ -6,14 +6,14 @@ from pathlib import Path
 from posstats.block import Block
 from posstats.block_io import read_block, write_block
 from posstats.stereo import stereo_models
-from posstats.synthetic import load_scenario, simulate
+from posstats.synthetic import Scenario, simulate
 
 from .output import staged_folder
 
 
-def simulate_block(scenario: Path, out: Path, seed: int | None) -> Iterator[str]:
+def simulate_block(scenario: Scenario, out: Path, seed: int | None) -> Iterator[str]:
     """Simulate a scenario into a block folder; yields what was written."""
-    block = simulate(load_scenario(scenario), seed)
+    block = simulate(scenario, seed)
     with staged_folder(out) as stage:
         write_block(block, stage)
     yield from _described(block)

@@ -116,26 +116,61 @@ def analyse(
 
 
 @cli.command()
+@click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
 @click.option(
-    "--scenario",
-    type=FOLDER,
-    required=True,
-    metavar="FILE",
-    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, area3.",
+    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
 )
-@click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
-@click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
+@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
 @_clear_errors
-def simulate(scenario: Path, out: Path, seed: int | None) -> None:
-    """Simulate a block of known truth, as a block folder.
+def paper(out: Path, seed: int, no_pdf: bool) -> None:
+    """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
+
+    Needs no input. Writes paper.html, paper.pdf, comparison.json (every published number beside
+    the reproduced one), and area1, area2, area3 with what analyse writes. Files of the same names
+    are replaced.
 
     \b
     Example:
+      posstats paper --out paper --seed 7
+    """
+    from .paper_command import reproduce_paper
+
+    for line in reproduce_paper(out, seed, pdf=not no_pdf):
+        click.echo(line)
+
+
+@cli.command()
+@click.option(
+    "--scenario",
+    type=FOLDER,
+    metavar="FILE",
+    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, area3.",
+)
+@click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
+@click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
+@click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
+@_clear_errors
+def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | None) -> None:
+    """Simulate a block of known truth, as a block folder.
+
+    Give either a scenario or the number of a test area.
+
+    \b
+    Examples:
+      posstats simulate --area 1 --out block
       posstats simulate --scenario area1-small --out block --seed 7
     """
+    from posstats.synthetic import load_scenario, shipped_scenario
+
     from .block_commands import simulate_block
 
-    for line in simulate_block(scenario, out, seed):
+    if scenario is not None and area is None:
+        chosen = load_scenario(scenario)
+    elif area is not None and scenario is None:
+        chosen = shipped_scenario(f"area{area}")
+    else:
+        raise click.UsageError("give either --scenario or --area")
+    for line in simulate_block(chosen, out, seed):
         click.echo(line)
 
 

@@ -4,13 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from . import figures, sections
+from .content import Bullets, Content, Labelled, Paragraph, Part
 from .figure_style import Drawing
-from .key_figures import KeyFigure, key_figures
-from .results_view import Results
-from .sections import Bullets, Content, Paragraph
+from .key_figures import KeyFigure
 from .tables import Table
-from .verdict import is_coarse, paragraph
 
 SIMULATED = "Simulated data"
 
@@ -20,7 +17,7 @@ class NumberedTable:
     """A table with its number in the document."""
 
     kind: ClassVar[str] = "table"
-    number: int
+    number: str
     table: Table
 
 
@@ -29,7 +26,7 @@ class NumberedFigure:
     """A figure with its number in the document."""
 
     kind: ClassVar[str] = "figure"
-    number: int
+    number: str
     drawing: Drawing
 
 
@@ -50,12 +47,13 @@ class Section:
 class ReportDocument:
     """All that templates see.
 
-    `created` is a date as text or empty, `mark` a mark for every page (simulated data) or empty,
-    `opening` the items between the verdict and the contents.
+    `title` says what kind of report this is, `subject` what it is about; `created` is a date as
+    text or empty, `mark` a mark for every page (simulated data) or empty, `opening` the items
+    between the verdict and the contents.
     """
 
     title: str
-    block: str
+    subject: str
     subtitle: str
     mark: str
     created: str
@@ -72,39 +70,27 @@ class ReportDocument:
         return repr(self)
 
 
-def build(results: Results, drawings: dict[str, Drawing] | None = None) -> ReportDocument:
-    """Make the document of a block's report.
+def numbered(
+    opening: Iterable[Content], parts: Iterable[Part]
+) -> tuple[tuple[Item, ...], tuple[Section, ...]]:
+    """Number sections, and tables and figures in the order of reading.
 
     Parameters
     ----------
-    results
-        The results dictionary (``results.json``), the only source of the report.
-    drawings
-        The figures of the results, if they have been drawn already.
+    opening
+        What stands before the contents.
+    parts
+        The sections.
     """
-    opening, parts = sections.block_report(results, drawings or figures.draw(results))
     numbering = _Numbering()
-    block = results["block"]
-    return ReportDocument(
-        title="Vertical parallax and POS angle errors",
-        block=str(block["name"]),
-        subtitle=sections.subtitle(results),
-        mark=SIMULATED if block.get("simulated") else "",
-        created=str(results.get("created") or "").partition("T")[0],
-        version=str(results.get("posstats_version") or ""),
-        verdict=paragraph(results),
-        coarse=is_coarse(results),
-        key_figures=key_figures(results),
-        opening=numbering.items(opening),
-        sections=tuple(
-            Section(part.id, number, part.title, numbering.items(part.content))
-            for number, part in enumerate(parts, start=1)
-        ),
+    return numbering.items(opening), tuple(
+        Section(part.id, number, part.title, numbering.items(part.content))
+        for number, part in enumerate(parts, start=1)
     )
 
 
 class _Numbering:
-    """Numbers tables and figures in the order of reading."""
+    """Numbers tables and figures in the order of reading, but for those with their own label."""
 
     def __init__(self) -> None:
         self._tables = 0
@@ -114,10 +100,18 @@ class _Numbering:
         return tuple(self._item(part) for part in content)
 
     def _item(self, part: Content) -> Item:
+        if isinstance(part, Labelled):
+            return _with_label(part)
         if isinstance(part, Table):
             self._tables += 1
-            return NumberedTable(self._tables, part)
+            return NumberedTable(str(self._tables), part)
         if isinstance(part, Drawing):
             self._figures += 1
-            return NumberedFigure(self._figures, part)
+            return NumberedFigure(str(self._figures), part)
         return part
+
+
+def _with_label(part: Labelled) -> NumberedTable | NumberedFigure:
+    if isinstance(part.item, Table):
+        return NumberedTable(part.label, part.item)
+    return NumberedFigure(part.label, part.item)

@@ -1,18 +1,24 @@
 """Figures of vertical parallax: by model, by angle held (error sources), by angle corrected."""
 
+import math
+import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from . import figure_style as style
 from . import format as fmt
 from .results_view import (
     FIXED,
+    GROUND_ANGLES,
     Results,
-    first,
+    Row,
+    mean_over_models,
     orientation_label,
     rows,
     strips_with_models,
@@ -23,19 +29,6 @@ _MODEL_SERIES = (
     ("pos_px", "POS as delivered", style.VERMILLION, "o"),
     ("corrected_px", "after the selected correction", style.BLUE, "s"),
     ("independent_px", "relative orientation", style.GREEN, "^"),
-)
-_SOURCE_BARS = (
-    ("angles", style.BLACK, ""),
-    ("omega", style.VERMILLION, "////"),
-    ("phi", style.SKY, "xxxx"),
-    ("kappa", style.ORANGE, "\\\\\\\\"),
-    ("none", style.GREEN, ""),
-)
-_CORRECTIONS = (
-    ("omega", style.ORANGE, "D"),
-    ("phi", style.SKY, "v"),
-    ("kappa", style.PURPLE, "P"),
-    ("selected", style.BLUE, "s"),
 )
 
 
@@ -71,81 +64,130 @@ def by_model(results: Results) -> style.Drawing | None:
 
 def error_sources(results: Results) -> style.Drawing | None:
     """Bars per strip: what relative orientation leaves with POS angles held."""
-    sources = rows(results, "error_sources")
-    known = {row["strip"] for row in sources if not fmt.is_missing(row["mean_px"])}
-    kept = [strip for strip in strips_with_models(results) if strip in known]
-    if not kept:
-        return None
-    figure = style.new_figure(2.9)
-    axis = figure.add_subplot()
-    width = 0.8 / len(_SOURCE_BARS)
-    for k, (held, colour, hatch) in enumerate(_SOURCE_BARS):
-        heights = [
-            first(results, "error_sources", strip=s, fixed=held).get("mean_px") for s in kept
-        ]
-        x = np.arange(len(kept)) + (k - 2) * width
-        axis.bar(x, [h or np.nan for h in heights], width, label=FIXED[held],
-                 color="white" if hatch else colour, edgecolor=colour, hatch=hatch,
-                 lw=0.7)  # fmt: skip
-    _strip_axis(axis, kept)
-    axis.set_ylabel("mean RMS vertical parallax, px")
-    style.legend_below(figure, axis, 5)
     caption = (
         "Error sources: mean RMS vertical parallax per strip after relative orientation with POS "
-        "angles of the right image held fixed. An angle whose holding keeps the parallax high "
-        "carries the error; bars too low to be seen are in the table."
+        "angles of the right image held (logarithmic scale; the numbers are means over all "
+        "models). Grey is what remains with none held. An angle whose bars reach those of all "
+        "three carries the error; one whose bars stay grey does no harm."
     )
+    bars = held_angles(results, "px")
+    if not any(group.of_strip for group in bars):
+        return None
+    figure = bar_figure(bars, strips_with_models(results), "px")
     return style.finish(figure, "error_sources", "Vertical parallax with POS angles held", caption)
 
 
 def corrected(results: Results) -> style.Drawing | None:
-    """Parallax per strip: raw, each angle corrected alone, selected set, relative orientation."""
-    kept = strips_with_models(results)
-    series = [
-        ("POS as delivered", style.VERMILLION, "o",
-         _means(results, kept, "parallax", method="pos")),
-        *(
-            (orientation_label(results, name), colour, marker,
-             _means(results, kept, "corrected_parallax", corrected=name))
-            for name, colour, marker in _CORRECTIONS
-        ),
-        ("relative orientation", style.GREEN, "^",
-         _means(results, kept, "parallax", method="independent")),
-    ]  # fmt: skip
-    values = [v for *_, means in series for v in fmt.present(means) if v > 0]
-    if not values:
-        return None
-    figure = style.new_figure(3.1)
-    axis = figure.add_subplot()
-    for k, (label, colour, marker, means) in enumerate(series):
-        x = np.arange(len(kept)) + (k - 2.5) * 0.11
-        hollow = label.endswith("corrected") or label.startswith("selected")
-        axis.plot(x, [np.nan if v is None else v for v in means], marker, label=label, color=colour,
-                  mfc="white" if hollow else colour, ms=4.8, mew=1.1)  # fmt: skip
-    style.log_axis(axis, values)
-    _strip_axis(axis, kept)
-    axis.set_ylabel("mean RMS vertical parallax, px")
-    style.legend_below(figure, axis, 3)
+    """Bars per strip: raw, each angle corrected alone, selected set, relative orientation."""
     chosen = verdict(results).get("corrected_angles") or []
     words = f"Selected: {fmt.joined(chosen)}." if chosen else "No correction was selected."
     caption = (
         "Mean RMS vertical parallax per strip from the POS as delivered, with each angle corrected "
         "alone, with the selected corrections, and after relative orientation (logarithmic "
-        f"scale). {words}"
+        "scale; the numbers are means over all models). Grey is what relative orientation "
+        f"leaves. {words}"
     )
+    bars = corrections(results, "px", (*GROUND_ANGLES, "selected"))
+    if not any(group.of_strip for group in bars):
+        return None
+    figure = bar_figure(bars, strips_with_models(results), "px")
     return style.finish(figure, "corrected", "Vertical parallax after correction", caption)
 
 
-def _means(results: Results, strips: Sequence[str], key: str, **which: str) -> list[float | None]:
-    return [first(results, key, strip=strip, **which).get("mean_px") for strip in strips]
+@dataclass(frozen=True)
+class Bars:
+    """Mean parallax per strip of one orientation, and over all its models."""
+
+    label: str
+    of_strip: dict[str, float]
+    mean: float | None
 
 
-def _strip_axis(axis: Axes, strips: Sequence[str]) -> None:
-    style.strip_ticks(axis, range(len(strips)), strips)
-    axis.set_xlim(-0.6, len(strips) - 0.4)
-    axis.grid(axis="y")
-    for edge in range(len(strips) - 1):
-        axis.axvline(edge + 0.5, color=style.LIGHT, lw=0.5)
+def held_angles(results: Results, unit: str) -> list[Bars]:
+    """Relative orientation with POS angles held, none of them last; `unit` is px or mm."""
+    return [
+        _bars(label, rows(results, "error_sources", fixed=name), unit)
+        for name, label in FIXED.items()
+    ]
+
+
+def corrections(results: Results, unit: str, corrected: Sequence[str]) -> list[Bars]:
+    """The POS as delivered, corrections of it, relative orientation; `unit` is px or mm."""
+    made = [
+        _bars(orientation_label(results, name),
+              rows(results, "corrected_parallax", corrected=name), unit)
+        for name in corrected
+    ]  # fmt: skip
+    ends = {"pos": "POS as delivered", "independent": "relative orientation"}
+    pos, relative = (
+        _bars(label, rows(results, "parallax", method=name), unit) for name, label in ends.items()
+    )
+    return [pos, *made, relative]
+
+
+def _bars(label: str, per_strip: Sequence[Row], unit: str) -> Bars:
+    key = f"mean_{unit}"
+    # Zero, the parallax of data without errors, has no place on a logarithmic scale.
+    known = {row["strip"]: row[key] for row in per_strip if (row[key] or 0.0) > 0.0}
+    return Bars(label, known, mean_over_models(per_strip, key))
+
+
+def bar_figure(groups: Sequence[Bars], strips: Sequence[str], unit: str) -> Figure:
+    """Groups of bars side by side, one bar per strip, on a logarithmic scale.
+
+    Up to the height of the last group, which has to be the one that no POS angle can spoil, bars
+    are grey: what is above it is, on this scale, the factor that the POS angles cost.
+
+    Parameters
+    ----------
+    groups
+        In the order of showing, at least one with values; those without are left out.
+    strips
+        In the order of showing; those without values are left out.
+    unit
+        Of the heights.
+    """
+    shown = [group for group in groups if group.of_strip]
+    strips = [strip for strip in strips if any(strip in group.of_strip for group in shown)]
+    labels = [style.shortened(strip) for strip in strips]
+    figure = style.new_figure(2.25 + 0.05 * max(len(label) for label in labels))
+    axis = figure.add_subplot()
+    style.log_axis(axis, [height for group in shown for height in group.of_strip.values()])
+    pitch = len(strips) + max(1.0, 0.15 * len(strips))
+    for k, group in enumerate(shown):
+        _group(axis, k * pitch, group, groups[-1], strips, unit)
+    _strip_labels(axis, labels, [k * pitch for k in range(len(shown))])
+    axis.set_xlim(-0.8, (len(shown) - 1) * pitch + len(strips) - 0.2)
+    axis.set_ylabel(f"mean RMS vertical parallax, {unit}")
+    return figure
+
+
+def _group(
+    axis: Axes, left: float, group: Bars, least: Bars, strips: Sequence[str], unit: str
+) -> None:
+    floor = axis.get_ylim()[0]
+    known = [strip for strip in strips if strip in group.of_strip]
+    top = np.array([group.of_strip[strip] for strip in known])
+    grey = np.minimum(top, [least.of_strip.get(strip, floor) for strip in known])
+    x = left + np.array([strips.index(strip) for strip in known])
+    axis.bar(x, grey - floor, 0.8, bottom=floor, color=style.LIGHT, edgecolor=style.GREY, lw=0.4)
+    axis.bar(x, top - grey, 0.8, bottom=grey, color=style.VERMILLION)
+    heading = f"{textwrap.fill(group.label, 12)}\n{fmt.with_unit(group.mean, unit)}"
+    axis.text(left + (len(strips) - 1) / 2.0, 1.02, heading, transform=axis.get_xaxis_transform(),
+              ha="center", va="bottom")  # fmt: skip
+
+
+def _strip_labels(axis: Axes, labels: list[str], lefts: Sequence[float]) -> None:
+    """Ids under the bars of every group; where there is no room for all, under some."""
+    longest = max(len(label) for label in labels)
+    turned = longest > 3
+    room_pt = 72.0 * style.WIDTH_IN / (len(lefts) * (len(labels) + 1.0))
+    step = math.ceil((8.5 if turned else 4.5 * longest + 3.0) / room_pt)
+    places = [left + k for left in lefts for k in range(0, len(labels), step)]
+    axis.set_xticks(places, labels[::step] * len(lefts), rotation=90 if turned else 0,
+                    fontsize=6.5 if turned else 7.5)  # fmt: skip
+    axis.tick_params(axis="x", length=0)
+    axis.set_xlabel("strip")
 
 
 def _strip_bands(axis: Axes, strip_of_model: Sequence[str]) -> None:

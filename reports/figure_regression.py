@@ -1,11 +1,13 @@
 """Regression of angle errors on time: data, line, confidence band and residuals, OLS and GLS."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.special import stdtrit
@@ -15,6 +17,10 @@ from . import format as fmt
 from .results_view import Results, Row, angles, decided_by_strip, first, rows, setting
 
 FloatArray = npt.NDArray[np.float64]
+
+
+OLS_LABEL = "OLS line, 95 % band"
+GLS_LABEL = "GLS line, 95 % band"
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,72 @@ class Line:
         variance = self.intercept_se**2 + 2.0 * dt * self.covariance + (dt * self.slope_se) ** 2
         quantile = float(stdtrit(self.df_resid, 0.975)) if self.df_resid > 0 else math.nan
         return quantile * np.sqrt(np.maximum(variance, 0.0))
+
+
+Lines = dict[str, tuple[Line | None, Line | None]]
+"""OLS and GLS line of each scope."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Axes on which angle errors, shown in a unit, stand over the time since a start."""
+
+    axis: Axes
+    unit: fmt.Unit
+    start_s: float
+
+    def points(
+        self, time_s: npt.ArrayLike, error_rad: npt.ArrayLike, label: str, look: dict[str, Any]
+    ) -> None:
+        """Mark errors at times."""
+        shown = np.asarray(error_rad) * self.unit.per_si
+        self.axis.plot(np.asarray(time_s) - self.start_s, shown, label=label, **look)
+
+    def fit(
+        self,
+        time_s: Sequence[float],
+        ols: Line | None,
+        gls: Line | None,
+        zero: Line | None = None,
+    ) -> None:
+        """Draw lines and their bands over the span of times, less a line that is to be zero."""
+        grid = np.linspace(min(time_s), max(time_s), 40)
+        base = zero.at(grid) if zero else 0.0
+        # Both black: lines that agree look like one.
+        for line, label, dash, shade in (
+            (ols, OLS_LABEL, "-", 0.22), (gls, GLS_LABEL, (0, (4, 2)), 0.13)
+        ):  # fmt: skip
+            if line:
+                self._line(grid, line.at(grid) - base, line.half_width(grid), label, dash, shade)
+
+    def _line(
+        self,
+        time_s: FloatArray,
+        middle_rad: FloatArray,
+        half_rad: FloatArray,
+        label: str,
+        dash: Any,
+        shade: float,
+    ) -> None:
+        time, scale = time_s - self.start_s, self.unit.per_si
+        label = "_" if label in self.axis.get_legend_handles_labels()[1] else label
+        self.axis.fill_between(time, (middle_rad - half_rad) * scale,
+                               (middle_rad + half_rad) * scale, color=style.BLACK, alpha=shade,
+                               lw=0, label=label)  # fmt: skip
+        self.axis.plot(time, middle_rad * scale, color=style.BLACK, ls=dash, lw=1.2, label=label)
+
+    def keep_large(self, errors_rad: Sequence[float]) -> None:
+        """Limits at which no wide confidence band makes the data small."""
+        values = [error * self.unit.per_si for error in errors_rad]
+        room = max(max(values) - min(values), 1e-12)
+        low, high = self.axis.get_ylim()
+        self.axis.set_ylim(max(low, min(values) - 0.3 * room), min(high, max(values) + 0.3 * room))
+
+    def label(self, quantity: str) -> None:
+        """Name the vertical axis, with its unit."""
+        self.axis.set_ylabel(f"{quantity}, {self.unit.name}")
+        self.axis.grid(axis="y")
+        self.axis.ticklabel_format(useOffset=False)
 
 
 def ordinary(row: Row) -> Line | None:
@@ -69,31 +141,35 @@ def regressions(results: Results) -> list[style.Drawing]:
 
 
 def _regression(results: Results, frame: str, angle: str) -> style.Drawing | None:
-    data = [row for row in rows(results, "angle_errors") if row.get("used")
-            and not fmt.is_missing(row.get(f"{angle}_rad"))]  # fmt: skip
+    data = used_errors(results, angle)
     if not data:
         return None
-    unit = fmt.angle_unit(row[f"{angle}_rad"] for row in data)
-    start = min(row["time_s"] for row in data)
     figure = style.new_figure(3.7)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
+    start = min(row["time_s"] for row in data)
     lines = _fitted(results, frame, angle)
-    _points(upper, lower, data, angle, unit, start, lines)
-    for scope, (ols, gls) in lines.items():
-        times = np.array([row["time_s"] for row in data if scope in ("block", row["strip"])])
-        _draw_line(upper, ols, times, start, unit, style.BLACK, "-", "OLS line, 95 % band")
-        _draw_line(upper, gls, times, start, unit, style.PURPLE, "--", "GLS line, 95 % band")
+    panel = Panel(upper, fmt.angle_unit(row[f"{angle}_rad"] for row in data), start)
+    _draw_errors(panel, data, angle, lines)
     for row in rows(results, "selection", frame=frame, angle=angle, form="constant"):
-        _draw_constant(upper, results, row, unit)
-    _keep_data_large(upper, [row[f"{angle}_rad"] * unit.per_si for row in data])
-    _axes(upper, lower, angle, unit)
+        _draw_constant(panel, results, row)
+    panel.keep_large([row[f"{angle}_rad"] for row in data])
+    panel.label(f"error of {angle}")
+    _draw_residuals(lower, start, data, angle, lines)
+    lower.set_xlabel("time since the first exposure shown, s")
+    figure.align_ylabels([upper, lower])
     _legend(figure, upper)
     caption = _caption(angle, frame, start, bool(lines))
     name = f"regression_{frame}_{angle}"
     return style.finish(figure, name, f"Regression of the error of {angle} on time", caption)
 
 
-def _fitted(results: Results, frame: str, angle: str) -> dict[str, tuple[Line | None, Line | None]]:
+def used_errors(results: Results, angle: str) -> list[Row]:
+    """Images whose error of an angle is determined."""
+    return [row for row in rows(results, "angle_errors") if row.get("used")
+            and not fmt.is_missing(row.get(f"{angle}_rad"))]  # fmt: skip
+
+
+def _fitted(results: Results, frame: str, angle: str) -> Lines:
     """Lines of the scope the analysis decided at: the block's, or one per strip."""
     by_strip = decided_by_strip(results)
     fitted = {}
@@ -103,86 +179,81 @@ def _fitted(results: Results, frame: str, angle: str) -> dict[str, tuple[Line | 
     return fitted
 
 
-def _points(
-    upper: Axes,
-    lower: Axes,
-    data: Sequence[Row],
-    angle: str,
-    unit: fmt.Unit,
-    start: float,
-    lines: dict[str, tuple[Line | None, Line | None]],
+def _draw_errors(panel: Panel, data: Sequence[Row], angle: str, lines: Lines) -> None:
+    for strip, part, look in _by_strip(data):
+        errors = [row[f"{angle}_rad"] for row in part]
+        panel.points([row["time_s"] for row in part], errors, f"strip {style.shortened(strip)}",
+                     look)  # fmt: skip
+    for scope, (ols, gls) in lines.items():
+        times = _times(data, scope)
+        if times:
+            panel.fit(times, ols, gls)
+
+
+def _draw_residuals(
+    axis: Axes, start_s: float, data: Sequence[Row], angle: str, lines: Lines
 ) -> None:
-    strips = list(dict.fromkeys(row["strip"] for row in data))
-    for strip, (colour, marker) in style.strip_style(strips).items():
-        part = [row for row in data if row["strip"] == strip]
-        time = np.array([row["time_s"] for row in part])
-        error = np.array([row[f"{angle}_rad"] for row in part])
-        look = {"color": colour, "marker": marker, "ls": "", "ms": 3.2, "mew": 0.6, "mfc": "none"}
-        upper.plot(time - start, error * unit.per_si, label=style.shortened(strip), **look)  # type: ignore[arg-type]
-        ols = lines.get("block", lines.get(strip, (None, None)))[0]
+    """Errors less their OLS line, where its band is large enough to be seen."""
+    residuals = {}
+    for row in data:
+        ols = lines.get("block", lines.get(row["strip"], (None, None)))[0]
         if ols:
-            lower.plot(time - start, (error - ols.at(time)) * unit.per_si, **look)  # type: ignore[arg-type]
+            residuals[row["image"]] = row[f"{angle}_rad"] - float(ols.at(row["time_s"]))
+    panel = Panel(axis, fmt.angle_unit(residuals.values()), start_s)
+    for _, part, look in _by_strip([row for row in data if row["image"] in residuals]):
+        errors = [residuals[row["image"]] for row in part]
+        panel.points([row["time_s"] for row in part], errors, "_", look)
+    for scope, (ols, gls) in lines.items():
+        times = _times(data, scope)
+        if times and ols:
+            panel.fit(times, ols, gls, zero=ols)
+    if residuals:
+        panel.keep_large(list(residuals.values()))
+    panel.label("residual")
 
 
-def _draw_line(
-    axis: Axes,
-    line: Line | None,
-    times: FloatArray,
-    start: float,
-    unit: fmt.Unit,
-    colour: str,
-    dash: str,
-    label: str,
-) -> None:
-    if line is None or not times.size:
-        return
-    grid = np.linspace(times.min(), times.max(), 40)
-    middle, half = line.at(grid), line.half_width(grid)
-    known = label in axis.get_legend_handles_labels()[1]
-    axis.fill_between(grid - start, (middle - half) * unit.per_si, (middle + half) * unit.per_si,
-                      color=colour, alpha=0.22, lw=0)  # fmt: skip
-    axis.plot(grid - start, middle * unit.per_si, color=colour, ls=dash, lw=1.3,
-              label="_" if known else label)  # fmt: skip
+def _by_strip(data: Sequence[Row]) -> Iterator[tuple[str, list[Row], dict[str, Any]]]:
+    """Each strip, its rows and the look of its marks."""
+    strips = dict.fromkeys(row["strip"] for row in data)
+    for strip, (colour, marker) in style.strip_style(list(strips)).items():
+        look = {"color": colour, "marker": marker, "ls": "", "ms": 3.2, "mew": 0.6, "mfc": "none"}
+        yield strip, [row for row in data if row["strip"] == strip], look
 
 
-def _draw_constant(axis: Axes, results: Results, decision: Row, unit: fmt.Unit) -> None:
+def _times(data: Sequence[Row], scope: str) -> list[float]:
+    return [row["time_s"] for row in data if scope in ("block", row["strip"])]
+
+
+def _draw_constant(panel: Panel, results: Results, decision: Row) -> None:
     """The constant that is taken off the whole block."""
     which = {key: decision[key] for key in ("frame", "angle", "scope")}
     constant = first(results, "regression", **which).get("constant_rad")
     if decision["scope"] == "block" and constant is not None:
-        axis.axhline(constant * unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
-                     label="constant taken off")  # fmt: skip
-
-
-def _keep_data_large(axis: Axes, values: Sequence[float]) -> None:
-    """Limits at which no wide confidence band makes the data small."""
-    room = max(max(values) - min(values), 1e-12)
-    low, high = axis.get_ylim()
-    axis.set_ylim(max(low, min(values) - 0.3 * room), min(high, max(values) + 0.3 * room))
-
-
-def _axes(upper: Axes, lower: Axes, angle: str, unit: fmt.Unit) -> None:
-    upper.set_ylabel(f"error of {angle}, {unit.name}")
-    lower.set_ylabel(f"residual, {unit.name}")
-    lower.set_xlabel("time since the first exposure shown, s")
-    lower.axhline(0.0, color=style.GREY, lw=0.8)
-    for axis in (upper, lower):
-        axis.grid(axis="y")
-        axis.ticklabel_format(useOffset=False)
-    upper.figure.align_ylabels([upper, lower])
+        panel.axis.axhline(constant * panel.unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
+                           label="constant taken off")  # fmt: skip
 
 
 def _legend(figure: Figure, axis: Axes) -> None:
-    _, labels = axis.get_legend_handles_labels()
+    handles, labels = legend_entries(axis)
     longest = max(len(label) for label in labels)
-    style.legend_below(figure, axis, max(3, min(9, 110 // (longest + 6))))
+    figure.legend(handles, labels, loc="outside lower center",
+                  ncols=max(3, min(9, len(labels), 110 // (longest + 6))))  # fmt: skip
+
+
+def legend_entries(axis: Axes) -> tuple[list[Any], list[str]]:
+    """Handles and labels for a legend, where a line and its band have one label."""
+    labelled: dict[str, list[Artist]] = {}
+    for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
+        labelled.setdefault(label, []).append(handle)
+    return [tuple(handles) for handles in labelled.values()], list(labelled)
 
 
 def _caption(angle: str, frame: str, start: float, fitted: bool) -> str:
     lines = (
         " Solid: ordinary least squares; dashed: generalised least squares; shaded: 95 % "
-        "confidence band of each line. Below: residuals of the OLS line (GLS bands are wider where "
-        "the errors of neighbouring images are correlated)."
+        "confidence band of each line, the GLS band paler. Below: residuals of the OLS line with "
+        "both lines and bands (GLS bands are wider where the errors of neighbouring images are "
+        "correlated)."
         if fitted
         else " No line could be fitted; the reason is given with the table of regressions."
     )

@@ -121,12 +121,14 @@ def strip_style(strips: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def log_axis(axis: Axes, values: Sequence[float]) -> None:
-    """Logarithmic y-axis with plain numbers on 1, 2 and 5 (1 alone over many decades)."""
+    """Logarithmic y-axis with plain numbers: few per decade over many, more within one."""
     axis.set_yscale("log")
     low, high = min(values), max(values)
     axis.set_ylim(low / 1.5, high * 1.5)
-    wide = high / low > 3e3
-    axis.yaxis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0), numticks=20))
+    steps: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)
+    if high / low > 5.0:
+        steps = (1.0,) if high / low > 3e3 else (1.0, 2.0, 5.0)
+    axis.yaxis.set_major_locator(LogLocator(subs=steps, numticks=20))
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: fmt.number(value, 1)))
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.grid(axis="y")

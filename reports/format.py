@@ -51,6 +51,14 @@ def scientific(value: float | None, digits: int = 3) -> str:
     return f"{mantissa.replace('-', MINUS)}\u00a0×\u00a0{power_of_ten(int(power))}"
 
 
+def as_printed(value: float) -> str:
+    """A number with exactly the digits that it was typed with: ``7.857 × 10⁻⁶``, ``−0.459``."""
+    mantissa, _, power = repr(value).replace("-", MINUS).partition("e")
+    if not power:
+        return mantissa
+    return f"{mantissa}\u00a0×\u00a0{power_of_ten(int(power.replace(MINUS, '-')))}"
+
+
 def number(value: float | None, digits: int = 3) -> str:
     """A number with `digits` significant digits, in powers of ten where zeros would not be read."""
     if value is None or not math.isfinite(value):
@@ -127,6 +135,7 @@ class Unit:
 DEGREE = Unit("°", math.degrees(1.0))
 MILLIRADIAN = Unit("mrad", 1e3)
 MICRORADIAN = Unit("µrad", 1e6)
+NANORADIAN_PER_SECOND = Unit("nrad/s", 1e9)
 METRE = Unit("m", 1.0)
 MILLIMETRE = Unit("mm", 1e3)
 

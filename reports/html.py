@@ -10,7 +10,7 @@ from .document import ReportDocument
 from .figure_style import Drawing
 from .tables import Column
 
-TEMPLATE = "block_report.html.j2"
+TEMPLATE = "report.html.j2"
 
 
 def render(document: ReportDocument) -> str:

@@ -5,31 +5,47 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from . import document, figures, html, tables
+from . import block_document, figures, html, tables
 from . import pdf as pdf_writer
+from .document import ReportDocument
 from .results_view import Results
 
 
-def write_report(results: Results, folder: Path, *, pdf: bool = True) -> list[Path]:
+def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
     """Write ``tables/*.csv``, ``figures/*.svg``, ``report.html`` and ``report.pdf`` into a folder.
-
-    The PDF comes last: if it cannot be made (`PdfUnavailableError`), the rest is there.
 
     Returns
     -------
-    list of Path
-        The files written.
+    str
+        What is missing for a PDF, where one was wanted and none could be made; else empty.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with _garbage_kept():
-        written = tables.write_tables(results, folder / "tables")
+        tables.write_tables(results, folder / "tables")
         drawings = figures.draw(results)
-        written += figures.write_figures(results, folder / "figures", drawings)
-        page = html.render(document.build(results, drawings))
-        written.append(_write(folder / "report.html", page.encode("utf-8")))
-        if pdf:
-            written.append(_write(folder / "report.pdf", pdf_writer.render(page)))
-    return written
+        figures.write_figures(results, folder / "figures", drawings)
+        return write_pages(block_document.build(results, drawings), folder / "report", pdf=pdf)
+
+
+def write_pages(document: ReportDocument, path: Path, *, pdf: bool = True) -> str:
+    """Write a document as ``path.html`` and ``path.pdf``; `path` is without suffix.
+
+    The PDF comes last: if it cannot be made, the rest is there.
+
+    Returns
+    -------
+    str
+        What is missing for a PDF, where one was wanted and none could be made; else empty.
+    """
+    with _garbage_kept():
+        page = html.render(document)
+        path.with_suffix(".html").write_text(page, encoding="utf-8")
+        try:
+            if pdf:
+                path.with_suffix(".pdf").write_bytes(pdf_writer.render(page))
+        except pdf_writer.PdfUnavailableError as missing:
+            return str(missing)
+    return ""
 
 
 @contextmanager
@@ -42,8 +58,3 @@ def _garbage_kept() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
-
-
-def _write(path: Path, content: bytes) -> Path:
-    path.write_bytes(content)
-    return path

@@ -1,42 +1,10 @@
 """What a block's report says, section by section, around its tables and figures."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import ClassVar
-
 from . import format as fmt
 from . import parallax_tables, regression_tables, statistics_tables
+from .content import Bullets, Content, Paragraph, Part, filled, known
 from .figure_style import Drawing
 from .results_view import Results, decided_by_strip, has_mm, rows, setting
-from .tables import Table
-
-
-@dataclass(frozen=True)
-class Paragraph:
-    """A paragraph of plain text."""
-
-    kind: ClassVar[str] = "paragraph"
-    text: str
-
-
-@dataclass(frozen=True)
-class Bullets:
-    """A list of plain texts."""
-
-    kind: ClassVar[str] = "bullets"
-    texts: tuple[str, ...]
-
-
-Content = Paragraph | Bullets | Table | Drawing
-
-
-@dataclass(frozen=True)
-class Part:
-    """A section before its tables and figures are numbered."""
-
-    id: str
-    title: str
-    content: tuple[Content, ...]
 
 
 def subtitle(results: Results) -> str:
@@ -56,7 +24,7 @@ def block_report(
     results: Results, drawings: dict[str, Drawing]
 ) -> tuple[tuple[Content, ...], tuple[Part, ...]]:
     """The opening (the plan) and the sections of a block's report."""
-    opening = _known(drawings.get("plan"))
+    opening = known(drawings.get("plan"))
     parts = (
         _parallax(results, drawings),
         _error_sources(results, drawings),
@@ -88,7 +56,7 @@ def _parallax(results: Results, drawings: dict[str, Drawing]) -> Part:
     return Part(
         "parallax",
         "Vertical parallax",
-        (Paragraph(text), *_filled(tables), *_known(drawings.get("models")), *_filled([models])),
+        (Paragraph(text), *filled(tables), *known(drawings.get("models")), *filled([models])),
     )
 
 
@@ -102,7 +70,7 @@ def _error_sources(results: Results, drawings: dict[str, Drawing]) -> Part:
     return Part(
         "sources",
         "Error sources",
-        (Paragraph(text), *_known(drawings.get("error_sources")), *_filled([table])),
+        (Paragraph(text), *known(drawings.get("error_sources")), *filled([table])),
     )
 
 
@@ -129,7 +97,7 @@ def _angle_errors(results: Results) -> Part:
     return Part(
         "angles",
         "Errors of the POS angles",
-        (Paragraph(text), *_filled([statistics_tables.angle_summary(results)])),
+        (Paragraph(text), *filled([statistics_tables.angle_summary(results)])),
     )
 
 
@@ -150,7 +118,7 @@ def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
     ]
     reasons = () if tables[0].rows else tuple(Paragraph(note) for note in tables[0].notes[2:])
     return Part(
-        "regression", "Errors over time", (Paragraph(text), *_filled(tables), *reasons, *pictures)
+        "regression", "Errors over time", (Paragraph(text), *filled(tables), *reasons, *pictures)
     )
 
 
@@ -174,8 +142,8 @@ def _decisions(results: Results) -> Part:
             )
         )
     if decided_by_strip(results):
-        content += _filled([regression_tables.decisions_by_strip(results)])
-    content += _filled([regression_tables.decisions(results)])
+        content += filled([regression_tables.decisions_by_strip(results)])
+    content += filled([regression_tables.decisions(results)])
     return Part("decisions", "Decisions", tuple(content))
 
 
@@ -195,7 +163,7 @@ def _corrected(results: Results, drawings: dict[str, Drawing]) -> Part:
     return Part(
         "corrected",
         "Parallax after correction",
-        (Paragraph(text), *_known(drawings.get("corrected")), *_filled([table])),
+        (Paragraph(text), *known(drawings.get("corrected")), *filled([table])),
     )
 
 
@@ -214,7 +182,7 @@ def _check_points(results: Results, drawings: dict[str, Drawing]) -> Part:
     return Part(
         "check-points",
         "Check points",
-        (Paragraph(text), *_filled(tables), *_known(drawings.get("check_points"))),
+        (Paragraph(text), *filled(tables), *known(drawings.get("check_points"))),
     )
 
 
@@ -237,7 +205,7 @@ def _limits(results: Results) -> Part:
     return Part(
         "limits",
         "What the data cannot tell, and warnings",
-        (Paragraph(text), *_filled([table]), *told),
+        (Paragraph(text), *filled([table]), *told),
     )
 
 
@@ -278,18 +246,10 @@ def _provenance(results: Results) -> Part:
         ),
         statistics_tables.pairs("versions", "Software.", ("Package", "Version"), versions),
     ]
-    return Part("provenance", "Inputs, settings, versions", _filled(tables))
+    return Part("provenance", "Inputs, settings, versions", filled(tables))
 
 
 def _plain(value: object) -> str:
     if value is None:
         return fmt.MISSING
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
-
-
-def _filled(tables: Iterable[Table]) -> tuple[Table, ...]:
-    return tuple(table for table in tables if table.rows)
-
-
-def _known(*drawings: Drawing | None) -> tuple[Drawing, ...]:
-    return tuple(drawing for drawing in drawings if drawing)

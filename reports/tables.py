@@ -10,6 +10,7 @@ from . import format as fmt
 from .results_view import Results
 
 Align = Literal["left", "right", "prose"]
+SHORT_ROWS = 16
 LONG_WORD = 24  # letters from which an id may be broken over lines
 
 CSV_TABLES = (
@@ -72,6 +73,11 @@ class Table:
     def rows(self) -> tuple[tuple[str, ...], ...]:
         """Cells by row."""
         return tuple(zip(*(column.cells for column in self.columns), strict=True))
+
+    @property
+    def is_short(self) -> bool:
+        """Whether the table should stay on one page: few rows of one line each."""
+        return len(self.rows) <= SHORT_ROWS and all(c.align != "prose" for c in self.columns)
 
     @property
     def groups(self) -> tuple[HeadGroup, ...]:

@@ -28,6 +28,12 @@ def cause(results: Results) -> str:
         return f"{text}."
     if relative and raw / relative < NEAR_RELATIVE:
         return "This is about as good as the images allow, and no angle stands out."
+    every = mean_over_models(rows(results, "error_sources", fixed="angles"))
+    if relative and every is not None and every < NEAR_RELATIVE * relative:
+        return (
+            "It does not come from the angles: with all three held at their POS values, relative "
+            f"orientation still brings it down to {fmt.with_unit(every, 'px')}."
+        )
     return "It cannot be laid to one angle alone: held one by one, several keep the parallax high."
 
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 from small_blocks import CAMERA, Layout, observed_block, true_block
@@ -20,6 +21,8 @@ from posstats.bundle_parameters import (
     CommonParameter,
     drift_parameters,
 )
+from posstats.bundle_problem import Control
+from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
 from posstats.rotation import (
     rotation_from_vector,
     vector_from_rotation,
@@ -195,3 +198,157 @@ def test_solution_and_covariances_are_those_of_a_dense_solver():
         rows = slice(u + 3 * point, u + 3 * point + 3)
         own = result.ground_covariance_m2[point] / sigma[rows, None] / sigma[rows]
         np.testing.assert_allclose(own, covariance[rows, rows], rtol=0, atol=1e-6)
+
+
+def test_a_start_far_from_the_solution_leads_to_the_same_one():
+    problem, _ = small_problem()
+    expected = adjust(problem)
+    turn = rotation_from_vector(0.3 * np.random.default_rng(2).standard_normal((8, 3)))
+    far = replace(
+        problem,
+        ground_from_image=turn @ problem.ground_from_image,
+        ground_m=problem.ground_m + np.array([50.0, -30.0, 100.0]),
+    )
+    result = adjust(far)
+    assert result.n_iterations > expected.n_iterations
+    np.testing.assert_allclose(result.square_sum, expected.square_sum, rtol=1e-9)
+    np.testing.assert_allclose(result.ground_m, expected.ground_m, rtol=0, atol=1e-6)
+
+
+def test_estimates_scatter_about_the_truth_as_the_covariances_say():
+    """Whitened errors of all orientations, points and drift parameters have unit variance."""
+    parameters = drift_parameters(GNSS_SHIFTS, ("s0", "s1"), 0.3)
+    whitened = {"orientation": [], "point": [], "common": []}
+    for seed in range(40):
+        problem, truth = consistent_problem(parameters, seed)
+        result = adjust(problem)
+        pos = truth.orientations
+        orientation = np.concatenate(
+            [
+                wrapped(result.angles_rad - pos.angles_rad),
+                result.position_m - pos.position_m,
+            ],
+            axis=1,
+        )
+        roots = np.linalg.cholesky(result.orientation_covariance)
+        whitened["orientation"].append(np.linalg.solve(roots, orientation[:, :, None]))
+        roots = np.linalg.cholesky(result.ground_covariance_m2)
+        error = result.ground_m - bundle_problem(truth).ground_m
+        whitened["point"].append(np.linalg.solve(roots, error[:, :, None]))
+        root = np.linalg.cholesky(result.common_covariance)
+        shift = result.common - true_shifts(seed)
+        whitened["common"].append(np.linalg.solve(root, shift))
+    for name, values in whitened.items():
+        numbers = np.array(values).reshape(40, -1)
+        mean_square = (numbers**2).mean(axis=1)
+        spread = mean_square.std(ddof=1) / np.sqrt(40)
+        assert abs(mean_square.mean() - 1.0) < 4.0 * spread + 0.01, name
+
+
+def true_shifts(seed):
+    return 0.3 * np.random.default_rng(1000 + seed).standard_normal(6)
+
+
+def consistent_problem(parameters, seed):
+    """All observations have errors as stated, antenna positions also `true_shifts` per strip."""
+    truth = true_block(Layout(n_images=4, n_points=60))
+    rng = np.random.default_rng(seed)
+    angles = 1e-4 * rng.standard_normal((8, 3))
+    block = observed_block(truth, rng, error_rad=angles)
+    pos = block.orientations
+    shift = true_shifts(seed).reshape(2, 3)[(pos.strip == "s1").astype(int)]
+    block = replace(block, orientations=replace(pos, position_m=pos.position_m + shift))
+    problem = bundle_problem(block, parameters)
+    ground, sigma = bundle_problem(truth).ground_m[:4], 0.05
+    control = Control(
+        np.arange(4),
+        ground + sigma * rng.standard_normal((4, 3)),
+        np.broadcast_to(sigma**2 * np.eye(3), (4, 3, 3)),
+    )
+    return replace(problem, control=control), truth
+
+
+def test_blunders_are_found_and_the_rest_is_adjusted_as_without_them():
+    problem, _ = small_problem(n_points=400)
+    rng = np.random.default_rng(5)
+    wrong = rng.choice(len(problem.point), len(problem.point) // 30, replace=False)
+    direction = rng.uniform(0.0, 2.0 * np.pi, len(wrong))
+    xy = problem.xy_px.copy()
+    xy[wrong] += 30.0 * np.column_stack([np.cos(direction), np.sin(direction)])
+    rays = np.bincount(problem.point, minlength=len(problem.ground_m))[problem.point]
+    result = adjust(replace(problem, xy_px=xy), robust=True)
+    found = result.rejected[wrong][rays[wrong] >= 4]
+    assert found.mean() > 0.95
+
+    sigma = problem.sigma_px.copy()
+    sigma[result.rejected] = np.inf
+    expected = adjust(replace(problem, xy_px=xy, sigma_px=sigma))
+    np.testing.assert_allclose(result.position_m, expected.position_m, rtol=0, atol=1e-8)
+    image = result.groups["image"]
+    assert image.n == 2 * (~result.rejected).sum()
+    assert 0.8 < image.square_sum / image.redundancy < 1.1
+
+
+def test_a_perfect_block_is_found_exactly_by_the_robust_solution():
+    truth = true_block(Layout(n_images=4, n_points=100))
+    result = adjust(bundle_problem(truth), robust=True)
+    assert not result.rejected.any()
+    np.testing.assert_allclose(result.position_m, truth.orientations.position_m, rtol=0, atol=1e-6)
+
+
+def test_a_network_without_datum_names_its_images():
+    problem, _ = small_problem(n_control=0)
+    pos = replace(
+        problem.pos,
+        sigma_antenna_m=np.full((8, 3), np.inf),
+        sigma_angles_rad=np.full((8, 3), np.inf),
+    )
+    with pytest.raises(UndeterminedError) as caught:
+        adjust(replace(problem, pos=pos))
+    assert caught.value.images == tuple(range(8))
+    assert caught.value.common == ()
+
+
+def test_parameters_that_nothing_separates_are_named():
+    """A shift of all antennas beside a shift of each strip, all free."""
+    parameters = (
+        *drift_parameters(GNSS_SHIFTS, ("block",)),
+        *drift_parameters(("gnss_z_shift",), ("s0", "s1")),
+    )
+    problem, _ = small_problem(parameters)
+    with pytest.raises(UndeterminedError) as caught:
+        adjust(problem)
+    assert caught.value.common == (2, 3, 4)
+    assert caught.value.images == ()
+
+
+def test_a_point_of_one_ray_is_left_out():
+    problem, _ = small_problem()
+    point = problem.point[0]
+    keep = (problem.point != point) | (np.arange(len(problem.point)) == 0)
+    alone = replace(
+        problem,
+        point=problem.point[keep], image=problem.image[keep],
+        xy_px=problem.xy_px[keep], sigma_px=problem.sigma_px[keep],
+    )  # fmt: skip
+    result = adjust(alone)
+    np.testing.assert_array_equal(np.flatnonzero(result.rejected), [0])
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(result.ground_m[:, 0])), [point])
+    total = sum(group.redundancy for group in result.groups.values())
+    np.testing.assert_allclose(total, result.dof, rtol=1e-9)
+
+
+def test_points_behind_the_cameras_are_refused():
+    problem, _ = small_problem()
+    with pytest.raises(GeometryError, match="behind cameras"):
+        adjust(replace(problem, ground_m=problem.ground_m + 5000.0 * np.eye(3)[2]))
+
+
+def test_progress_is_told_and_an_iteration_that_does_not_settle_is_refused(monkeypatch):
+    problem, _ = small_problem()
+    told = []
+    adjust(problem, progress=lambda *step: told.append(step))
+    assert [step[0] for step in told] == list(range(1, len(told) + 1))
+    monkeypatch.setattr("posstats.bundle.MAX_ITERATIONS", 1)
+    with pytest.raises(ConvergenceError, match="did not settle in 1 step"):
+        adjust(problem)

@@ -29,9 +29,13 @@ def arguments(models, angles=None, base=None):
 def derivatives(models):
     frame = base_frames(models.base_m)[:, None]
     by_angle = rotation_derivatives(models.orientations.angles_rad, models.orientations.system)
-    left, right, offsets, r1, r2, base = arguments(models)
+    left, right, _, r1, r2, base = arguments(models)
     d1, d2 = frame @ by_angle[models.pairs.left], frame @ by_angle[models.pairs.right]
-    return y_parallax_derivatives(left, right, offsets, r1, r2, d1, d2, base)
+    vectors, left_ray = np.concatenate([left, right]), np.arange(len(left))
+    pair = models.pairs.pair_of_point
+    return y_parallax_derivatives(
+        vectors, left_ray, left_ray + len(left), pair, r1, r2, d1, d2, base
+    )
 
 
 def erring_models(system):

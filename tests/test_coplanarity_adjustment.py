@@ -10,7 +10,13 @@ from posstats import coplanarity_adjustment
 from posstats.coplanarity import base_frames
 from posstats.coplanarity_adjustment import Priors, adjust
 from posstats.coplanarity_linearised import linearised
-from posstats.coplanarity_normals import RIDGE, PointRays, accumulate_normals, precision
+from posstats.coplanarity_normals import (
+    RIDGE,
+    PointRays,
+    accumulate_normals,
+    matrix_of_parts,
+    precision,
+)
 from posstats.coplanarity_pairs import point_pairs
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.stereo import cross_strip_pairs, stereo_models
@@ -37,14 +43,14 @@ def problem(seed=1, angle_error=2e-3):
 def dense(pairs, observed, n_images):
     """J (N, 6 n) and D (N, 2 m) written out."""
     n_pairs = len(observed.q)
-    pair = np.repeat(np.arange(len(pairs.left)), np.diff(pairs.offsets))
     design = np.zeros((n_pairs, n_images, 6))
     by_image = np.zeros((n_pairs, len(pairs.ray_image), 2))
     rows = np.arange(n_pairs)
-    design[rows, pairs.left[pair], :3] = observed.by_left_angles
-    design[rows, pairs.right[pair], :3] = observed.by_right_angles
-    design[rows, pairs.left[pair], 3:] = -observed.by_base
-    design[rows, pairs.right[pair], 3:] = observed.by_base
+    left, right = pairs.left[pairs.pair], pairs.right[pairs.pair]
+    design[rows, left, :3] = observed.by_left_angles
+    design[rows, right, :3] = observed.by_right_angles
+    design[rows, left, 3:] = -observed.by_base
+    design[rows, right, 3:] = observed.by_base
     by_image[rows, pairs.left_ray] = observed.by_image[:, :2]
     by_image[rows, pairs.right_ray] = observed.by_image[:, 2:]
     return design.reshape(n_pairs, -1), by_image.reshape(n_pairs, -1)
@@ -59,15 +65,16 @@ def test_normals_are_those_of_matrices_written_out():
     )
     robust = np.random.default_rng(2).choice([1.0, 1.0, 0.3, 0.0], len(observed.q))
     size = unknowns.size
-    normals, right_side, noise = np.zeros((size, size)), np.zeros(size), np.zeros((size, size))
+    shape = (pairs.common.max() + 1, 6, 6)
+    normals, right_side, noise = np.zeros(shape), np.zeros(size), np.zeros(shape)
     image_noise = np.zeros((len(pairs.ray_image), 2))
     points = PointRays(
-        pairs.left_ray, pairs.right_ray, pairs.by_point, pairs.point_offsets, pairs.first_ray,
-        pairs.n_rays, pairs.ray_image,
+        pairs.left_ray, pairs.right_ray, pairs.point_offsets, pairs.first_ray, pairs.n_rays,
+        pairs.ray_image,
     )  # fmt: skip
     square_sum, noise_trace = accumulate_normals(
-        observed, precision(observed.variance, robust), points, normals, right_side, noise,
-        image_noise,
+        observed, precision(observed.variance, robust), points, pairs.common, normals, right_side,
+        noise, image_noise,
     )  # fmt: skip
 
     design, by_image = dense(pairs, observed, len(unknowns))
@@ -81,9 +88,12 @@ def test_normals_are_those_of_matrices_written_out():
     def close(found, expected):
         np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
 
-    close(np.triu(normals), np.triu(design.T @ weight @ design))
+    def upper(parts):
+        return np.triu(matrix_of_parts(parts, pairs.common))
+
+    close(upper(normals), np.triu(design.T @ weight @ design))
     close(right_side, design.T @ weight @ q)
-    close(np.triu(noise), np.triu(noise_design.T @ noise_design))
+    close(upper(noise), np.triu(noise_design.T @ noise_design))
     close(image_noise.ravel(), by_image.T @ weight @ q)
     assert square_sum == pytest.approx(q @ weight @ q, rel=1e-9)
     assert noise_trace == pytest.approx(np.trace(weight @ shared), rel=1e-9)

@@ -242,9 +242,10 @@ def test_the_rule_of_solvable_elements_is_the_rank_of_the_jacobian():
     r2 = frame @ models.orientations.ground_from_image[models.pairs.right]
     generators = np.array([np.cross(np.eye(3), axis) for axis in -np.eye(3)])
     _, left, right, by_base, _ = y_parallax_derivatives(
-        models.left_vectors,
-        models.right_vectors,
-        models.pairs.offsets,
+        np.concatenate([models.left_vectors, models.right_vectors]),
+        np.arange(200),
+        np.arange(200, 400),
+        models.pairs.pair_of_point,
         r1,
         r2,
         np.einsum("aij,pjk->paik", generators, r1),

@@ -3,25 +3,22 @@
 import copy
 import csv
 import re
-import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
 from report_results import area_results, assert_schema, coarse_results
 
 from posstats.errors import PosstatsError
-from posstats.reports import document, figures, html, pdf, tables, verdict
+from posstats.reports import block_document, figures, html, pdf, tables, verdict
 from posstats.reports.plan_view import PlanView
 from posstats.reports.report import write_report
 from posstats.reports.summary import summary
 
 HOSTILE = "<script>alert(1)</script> \"a\", 'b' & $x_1$"
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 @pytest.fixture(scope="module")
@@ -40,40 +37,12 @@ def coarse():
 
 @pytest.fixture(scope="module")
 def page(area) -> str:
-    return html.render(document.build(area))
+    return html.render(block_document.build(area))
 
 
 @pytest.fixture(scope="module")
 def coarse_page(coarse) -> str:
-    return html.render(document.build(coarse))
-
-
-class _Texts(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__()
-        self.tags: list[str] = []
-        self.ids: list[str] = []
-        self.links: list[str] = []
-        self.texts: list[str] = []
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append(tag)
-        self.ids += [value for name, value in attrs if name == "id"]
-        names = ("href", "src", "xlink:href")
-        self.links += [value for name, value in attrs if name in names]
-
-    def handle_data(self, data):
-        self.texts.append(data)
-
-
-def read(text: str) -> _Texts:
-    parser = _Texts()
-    parser.feed(text)
-    return parser
-
-
-def plain(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\u202f", " ")
+    return html.render(block_document.build(coarse))
 
 
 def test_verdict_names_parallax_cause_drift_correction_and_check_points(area):
@@ -117,7 +86,7 @@ def test_check_points_that_none_could_be_intersected_make_no_table(area):
     for row in results["check_points"]:
         row.update(dict.fromkeys(row.keys() - {"orientation", "translation_removed", "n"}), n=0)
     results["check_point_residuals"] = []
-    text = html.render(document.build(results))
+    text = html.render(block_document.build(results))
     assert 'id="table-check_points_shift_kept"' not in text
     assert "No check point could be intersected" in text
 
@@ -164,7 +133,7 @@ def test_hostile_ids_appear_as_text(area):
         row["left"] = HOSTILE
     results["warnings"] = [HOSTILE]
     results["inputs"] = [{"file": HOSTILE, "sha256": "0"}]
-    parsed = read(html.render(document.build(results)))
+    parsed = read(html.render(block_document.build(results)))
     assert "script" not in parsed.tags
     texts = [text.strip() for text in parsed.texts]
     assert texts.count(HOSTILE) >= 5
@@ -183,7 +152,7 @@ def test_no_number_has_more_digits_than_anyone_reads(page):
 
 def test_empty_lists_still_make_a_report(area):
     lists = {name: [] for name, value in area.items() if isinstance(value, list)}
-    text = html.render(document.build(area | lists | {"expected_noise_px": None}))
+    text = html.render(block_document.build(area | lists | {"expected_noise_px": None}))
     assert "no check points" in text.lower() or "not tested" in text
 
 
@@ -210,7 +179,7 @@ def test_figures_leave_the_settings_of_matplotlib_alone(area):
 
 
 def test_figures_and_page_are_the_same_bytes_every_time(area, page):
-    assert html.render(document.build(area)) == page
+    assert html.render(block_document.build(area)) == page
 
 
 def test_csv_tables_keep_every_row_and_every_digit(area, tmp_path):
@@ -231,11 +200,13 @@ def test_csv_tables_leave_missing_values_empty(coarse, tmp_path):
 
 
 def test_write_report_writes_all_parts(coarse, tmp_path):
-    written = write_report(coarse, tmp_path / "out", pdf=False)
-    names = {str(path.relative_to(tmp_path / "out")) for path in written}
-    assert {"report.html", "tables/models.csv", "figures/plan.svg"} <= names
-    assert "report.pdf" not in names
-    assert all(path.stat().st_size for path in written)
+    assert write_report(coarse, tmp_path / "out", pdf=False) == ""
+    written = {
+        str(path.relative_to(tmp_path / "out")): path for path in (tmp_path / "out").rglob("*.*")
+    }
+    assert {"report.html", "tables/models.csv", "figures/plan.svg"} <= set(written)
+    assert "report.pdf" not in written
+    assert all(path.stat().st_size for path in written.values())
 
 
 @pytest.fixture(scope="module")
@@ -243,14 +214,6 @@ def pdf_file(page, tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("pdf") / "report.pdf"
     path.write_bytes(pdf.render(page))
     return path
-
-
-def pdf_pages(path: Path) -> list[str]:
-    if not shutil.which("pdftotext"):
-        pytest.skip("pdftotext (poppler-utils) is not installed")
-    command = ["pdftotext", "-layout", str(path), "-"]
-    run = subprocess.run(command, capture_output=True, check=True, text=True)
-    return [plain(text) for text in run.stdout.split("\f")[:-1]]
 
 
 def test_every_pdf_page_is_numbered_headed_and_marked(pdf_file, area):
@@ -293,54 +256,13 @@ def _failing_import(missing):
     return guarded
 
 
-PROBE = """<script>
-const log = [];
-addEventListener("error", event => log.push("error " + event.message), true);
-document.addEventListener("securitypolicyviolation", e => log.push("request " + e.blockedURI));
-addEventListener("load", () => document.fonts.ready.then(() => {
-  const root = document.documentElement;
-  log.push("width " + root.scrollWidth + " of " + root.clientWidth);
-  log.push("requests " + performance.getEntriesByType("resource")
-    .filter(entry => !entry.name.startsWith("data:")).length);
-  log.push("fonts " + [...document.fonts].map(font => font.status).join(" "));
-  parent.postMessage(log.join("; "), "*");
-}));
-</script>"""
-FRAME = """<!DOCTYPE html><body><p id="told"></p>
-<script>addEventListener("message", event => { told.textContent = event.data; });</script>
-<iframe src="NAME" width="WIDTH" height="900" style="border: 0"></iframe></body>"""
-
-
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_sees_no_error_no_request_and_no_sideways_scrolling(
     page, coarse_page, tmp_path, width
 ):
-    for name, text in (("area", page), ("coarse", coarse_page)):
-        probed = text.replace("<head>", f"<head>{PROBE}", 1)
-        (tmp_path / f"{name}.html").write_text(probed, encoding="utf-8")
-        frame = tmp_path / "frame.html"
-        inside = FRAME.replace("NAME", f"{name}.html").replace("WIDTH", str(width))
-        frame.write_text(inside, encoding="utf-8")
-        told, errors = browse(frame, tmp_path / "profile")
-        assert f"width {width} of {width}" in told
-        assert "requests 0" in told
-        assert "fonts loaded" in told
-        assert "error" not in told
-        assert "CONSOLE" not in errors
-
-
-def browse(frame: Path, profile: Path) -> tuple[str, str]:
-    """What the page tells its frame, and the browser's log."""
-    flags = [
-        "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-        "--disable-background-networking", "--disable-component-update", "--disable-sync",
-        "--hide-scrollbars", "--enable-logging=stderr", "--allow-file-access-from-files",
-        "--window-size=1400,1000", "--virtual-time-budget=8000",
-    ]  # fmt: skip
-    command = [CHROMIUM, *flags, f"--user-data-dir={profile}", "--dump-dom", frame.as_uri()]
-    run = subprocess.run(command, capture_output=True, check=True, text=True, timeout=60)
-    return re.search(r'id="told">([^<]*)', run.stdout)[1], run.stderr
+    for text in (page, coarse_page):
+        assert_shown_without_fault(text, width, tmp_path)
 
 
 def at_strips(results):
@@ -359,7 +281,7 @@ def at_strips(results):
 
 def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area):
     results = at_strips(area)
-    text = html.render(document.build(results))
+    text = html.render(block_document.build(results))
     matrix = re.search(r'id="table-decisions_by_strip".*?</table>', text, re.DOTALL)[0]
     assert matrix.count("<tr>") == 1 + results["block"]["n_strips"]
     reasons = re.search(r'id="table-decisions".*?</table>', text, re.DOTALL)[0]
@@ -409,10 +331,10 @@ def test_verdict_says_what_a_poor_correction_leaves_in_the_angles(area):
 def test_angles_known_less_well_than_the_pos_claims_are_named(area):
     results = copy.deepcopy(area)
     results["settings"]["angle_rad"] = 1e-4
-    assert "less well than the POS" not in html.render(document.build(results))
+    assert "less well than the POS" not in html.render(block_document.build(results))
     for row in results["angle_error_summary"]:
         row["median_sigma_rad"] = 3e-4 if row["angle"] == "omega" else 1e-5
-    page = html.render(document.build(results))
+    page = html.render(block_document.build(results))
     assert "Here they give omega only to 300 µrad (0.0172°)" in plain(page)
 
 

@@ -8,18 +8,19 @@ from numpy.typing import NDArray
 
 from posstats.block import Block
 from posstats.formats.block_toml import BlockSettings
-from posstats.stereo import MIN_MODEL_POINTS, stereo_models
+from posstats.stereo import MIN_MODEL_POINTS, StereoModels, stereo_models
 
 _SHOWN = 5
 
 
 def block_warnings(block: Block) -> list[str]:
     """Sentences, with counts and the first few ids, on images, strips, models and points."""
+    models = stereo_models(block)
     return [
         *_point_warnings(block),
         *_strip_warnings(block),
-        *_model_warnings(block),
-        *_base_warnings(block),
+        *_model_warnings(models),
+        *_base_warnings(models),
         *_adjusted_warnings(block),
     ]
 
@@ -85,10 +86,9 @@ def _strip_warnings(block: Block) -> list[str]:
     return [f"{_count(single, 'strip')} of one image: {_listed(single)}."]
 
 
-def _model_warnings(block: Block) -> list[str]:
+def _model_warnings(models: StereoModels) -> list[str]:
     """Models of fewer than six common points, those of none among them."""
-    orientations = block.orientations
-    models = stereo_models(block)
+    orientations = models.orientations
     enough = models.pairs.n_points >= MIN_MODEL_POINTS
     formed = set(zip(models.pairs.left[enough], models.pairs.right[enough], strict=True))
     few = []
@@ -107,10 +107,9 @@ def _model_warnings(block: Block) -> list[str]:
     ]
 
 
-def _base_warnings(block: Block) -> list[str]:
+def _base_warnings(models: StereoModels) -> list[str]:
     """Models whose base the positions do not determine, as of a camera that hovers."""
-    orientations = block.orientations
-    models = stereo_models(block)
+    orientations = models.orientations
     left, right = models.pairs.left, models.pairs.right
     sigma = np.hypot(orientations.sigma_position_m[left], orientations.sigma_position_m[right])
     base_m = np.linalg.norm(models.base_m, axis=1)

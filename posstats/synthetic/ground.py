@@ -56,8 +56,10 @@ class Surface:
 
     def points(self, xy_m: _Floats) -> _Floats:
         """Points (n, 3) of the surface at (n, 2) map coordinates."""
-        waves = np.cos(xy_m @ self.wave_number.T + self.phase_rad).sum(axis=1)
-        return np.column_stack([xy_m, self.mean_height_m + self.amplitude_m * waves])
+        waves = xy_m @ self.wave_number.T
+        waves += self.phase_rad
+        height = self.mean_height_m + self.amplitude_m * np.cos(waves, out=waves).sum(axis=1)
+        return np.column_stack([xy_m, height])
 
 
 @dataclass(frozen=True, eq=False)

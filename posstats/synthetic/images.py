@@ -45,23 +45,28 @@ def reach_m(camera: Camera, plan: FlightPlan, surface: Surface) -> _Floats:
 
 def imaged(points: TruePoints, truth: Orientations, camera: Camera, reach_m: _Floats) -> Rays:
     """Points inside the image format; tie points in two images or more."""
-    near = cKDTree(points.position_m).query_ball_point(truth.position_m, reach_m)
-    image = np.repeat(np.arange(len(truth)), [len(found) for found in near])
-    point = np.fromiter((p for found in near for p in found), dtype=np.intp, count=len(image))
-    xy, inside = _projected(points.position_m[point], truth, image, camera)
-    point, image, xy = point[inside], image[inside], xy[inside]
+    tree, rotation = cKDTree(points.position_m), truth.ground_from_image
+    seen = []
+    for centre_m, ground_from_image, radius_m in zip(
+        truth.position_m, rotation, reach_m, strict=True
+    ):
+        near = np.array(tree.query_ball_point(centre_m, radius_m), dtype=np.intp)
+        vector = np.einsum("ij,mi->mj", ground_from_image, points.position_m[near] - centre_m)
+        xy_px, inside = _projected(vector, camera)
+        seen.append((near[inside], xy_px[inside]))
+    image = np.repeat(np.arange(len(truth)), [len(numbers) for numbers, _ in seen])
+    point, xy = (np.concatenate(parts) for parts in zip(*seen, strict=True))
     n_rays = np.bincount(point, minlength=len(points))
     wanted = ((points.kind != "tie") | (n_rays >= 2))[point]
     order = np.flatnonzero(wanted)[np.lexsort((image[wanted], point[wanted]))]
     return Rays(point[order], image[order], xy[order])
 
 
-def _projected(
-    position_m: _Floats, truth: Orientations, image: _Ints, camera: Camera
-) -> tuple[_Floats, _Bools]:
-    """Ideal (m, 2) image coordinates, px, and (m,) whether they are inside the format."""
-    ray = position_m - truth.position_m[image]
-    vector = np.einsum("mij,mi->mj", truth.ground_from_image[image], ray)
+def _projected(vector: _Floats, camera: Camera) -> tuple[_Floats, _Bools]:
+    """Ideal (m, 2) image coordinates, px, and (m,) whether they are inside the format.
+
+    `vector` (m, 3) leads from the projection centre to the points, in the axes of the image.
+    """
     in_front = vector[:, 2] < 0.0
     depth = np.where(in_front, -vector[:, 2], np.inf)
     xy = vector[:, :2] * (camera.principal_distance_px / depth)[:, None]

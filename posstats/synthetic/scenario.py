@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -336,15 +337,22 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
     if isinstance(source, Mapping):
         return read_table(Scenario, source, "scenario")
     path = Path(source)
-    shipped = files("posstats") / "scenarios" / f"{source}.toml"
+    if path.name == str(source) and not path.exists() and _shipped(path.name).is_file():
+        return shipped_scenario(path.name)
     try:
-        if path.name == str(source) and not path.exists() and shipped.is_file():
-            content = shipped.read_bytes()
-        else:
-            content = path.read_bytes()
+        content = path.read_bytes()
     except OSError as error:
         raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
     return read_table(Scenario, _toml(content, path.name), path.name)
+
+
+def shipped_scenario(name: str) -> Scenario:
+    """A scenario that comes with posstats, whatever lies in the working directory."""
+    return read_table(Scenario, _toml(_shipped(name).read_bytes(), name), name)
+
+
+def _shipped(name: str) -> Traversable:
+    return files("posstats") / "scenarios" / f"{name}.toml"
 
 
 def _toml(content: bytes, name: str) -> dict[str, Any]:

@@ -1,0 +1,180 @@
+"""Published and reproduced numbers side by side, row by row."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from posstats.experiment.areas import AREAS, area_scenario
+from posstats.experiment.findings import STRIP, only_row
+from posstats.experiment.published import Row, published
+from posstats.synthetic import Scenario
+
+Basis = Literal["given", "fitted", "predicted"]
+Results = Mapping[str, Any]
+
+TABLE3_AREA = 1
+_METHODS = ("pos", "independent", "dependent")
+_STATISTICS = ("max", "min", "mean")
+_NO_RATIO = ("intercept", "slope_per_t")
+_REGRESSION_KEYS = {
+    "intercept": "intercept_rad",
+    "slope_per_t": "slope_rad_per_s",
+    "r_squared": "r_squared",
+    "f_statistic": "f_statistic",
+    "p_value": "p_value",
+}
+_TABLE4_QUANTITIES = tuple(
+    f"{statistic}_{side}_m"
+    for statistic in ("max", "min", "rmse")
+    for side in ("horizontal", "vertical")
+)
+_ORIENTATIONS = {"pos": "pos", "omega_corrected": "omega"}
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One printed number beside the reproduced one.
+
+    Attributes
+    ----------
+    table
+        Of the paper, 1 to 4.
+    strip, angle, orientation
+        Where the table has them, else None; Table 2 without a strip is the mean over all models of
+        the area.
+    quantity
+        Column of the table, with its unit.
+    ratio
+        Reproduced over published; None where either is missing, the published one is zero, or
+        the units are not known (slopes and intercepts of Table 3).
+    basis
+        ``given``: an input of the simulation; ``fitted``: its errors were chosen to give the mean
+        of these numbers; ``predicted``: nothing was chosen for it.
+    """
+
+    table: int
+    area: int
+    strip: str | None
+    angle: str | None
+    orientation: str | None
+    quantity: str
+    published: float
+    reproduced: float | None
+    ratio: float | None
+    basis: Basis
+
+
+def compare(results: Mapping[int, Results]) -> tuple[Compared, ...]:
+    """Every number of Tables 1 to 4 beside its reproduction.
+
+    Parameters
+    ----------
+    results
+        Results dictionaries by area (1, 2, 3); Table 3 is compared with strip `STRIP` of area 1.
+    """
+    return tuple(
+        each
+        for table in (_table1, _table2, _table3, _table4)
+        for area in AREAS
+        for each in table(area, results[area])
+    )
+
+
+def _table1(area: int, results: Results) -> Iterator[Compared]:
+    (row,) = published(1, area=area)
+    place = _Place(1, area)
+    flown = _as_flown(area_scenario(area), results)
+    for quantity, value in flown.items():
+        yield place.compared(quantity, row, value, "given")
+    n_tie_points = results["block"]["n_tie_points"]
+    yield place.compared("n_tie_points", row, n_tie_points, "fitted")
+
+
+def _as_flown(scenario: Scenario, results: Results) -> dict[str, float | None]:
+    camera, flight, block = scenario.camera, scenario.flight, results["block"]
+    return {
+        "principal_distance_mm": camera.principal_distance_mm,
+        "width_px": camera.width_px,
+        "height_px": camera.height_px,
+        "pixel_size_mm": camera.pixel_size_mm,
+        "scale_denominator": flight.scale_denominator,
+        "forward_overlap": flight.forward_overlap,
+        "side_overlap": flight.side_overlap,
+        "n_strips": block["n_strips"],
+        "n_images": block["n_images"],
+        "n_control_points": block["n_check_points"],
+    }
+
+
+def _table2(area: int, results: Results) -> Iterator[Compared]:
+    means: dict[str, list[tuple[int, float, float]]] = {}
+    for row in published(2, area=area):
+        place = _Place(2, area, strip=row["strip"])
+        for method in _METHODS:
+            strip = only_row(results, "parallax", strip=row["strip"], method=method)
+            for statistic in _STATISTICS:
+                basis: Basis = "fitted" if statistic == "mean" else "predicted"
+                quantity = f"{method}_{statistic}_mm"
+                yield place.compared(quantity, row, strip[f"{statistic}_mm"], basis)
+            mean = f"{method}_mean_mm"
+            means.setdefault(mean, []).append((strip["n_models"], row[mean], strip["mean_mm"]))
+    for mean, strips in means.items():
+        n_models, printed, reproduced = zip(*strips, strict=True)
+        row = {mean: _weighted(printed, n_models)}
+        yield _Place(2, area).compared(mean, row, _weighted(reproduced, n_models), "fitted")
+
+
+def _weighted(values: Sequence[float], n_models: Sequence[int]) -> float:
+    """Mean over the models of an area, from the means of its strips."""
+    total = sum(n * value for n, value in zip(n_models, values, strict=True))
+    return total / sum(n_models)
+
+
+def _table3(area: int, results: Results) -> Iterator[Compared]:
+    if area != TABLE3_AREA:
+        return
+    for row in published(3):
+        place = _Place(3, area, strip=STRIP, angle=row["angle"])
+        line = only_row(results, "regression", angle=row["angle"], scope=STRIP, frame="ground")
+        for quantity, key in _REGRESSION_KEYS.items():
+            yield place.compared(quantity, row, line[key], "predicted")
+
+
+def _table4(area: int, results: Results) -> Iterator[Compared]:
+    for row in published(4, area=area):
+        place = _Place(4, area, orientation=row["orientation"])
+        points = only_row(
+            results,
+            "check_points",
+            orientation=_ORIENTATIONS[row["orientation"]],
+            translation_removed=True,
+        )
+        yield place.compared("n_check_points", row, points["n"], "given")
+        for quantity in _TABLE4_QUANTITIES:
+            yield place.compared(quantity, row, points[quantity], "predicted")
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where in the paper's tables a number stands."""
+
+    table: int
+    area: int
+    strip: str | None = None
+    angle: str | None = None
+    orientation: str | None = None
+
+    def compared(self, quantity: str, row: Row, reproduced: float | None, basis: Basis) -> Compared:
+        """The row's number beside the reproduced one."""
+        printed = row[quantity]
+        ratio = None
+        if reproduced is not None and printed != 0 and quantity not in _NO_RATIO:
+            ratio = reproduced / printed
+        return Compared(
+            **vars(self),
+            quantity=quantity,
+            published=printed,
+            reproduced=reproduced,
+            ratio=ratio,
+            basis=basis,
+        )

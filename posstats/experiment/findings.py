@@ -1,0 +1,217 @@
+"""What one simulated area shows, in numbers, and which of the paper's findings it bears out."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from posstats.parallax import NOTICEABLE
+from posstats.rotation import ANGLE_NAMES
+from posstats.synthetic import Scenario
+
+Results = Mapping[str, Any]
+Row = Mapping[str, Any]
+
+STRIP = "1"
+"""Strip of area 1 that stands for Table 3, whose numbers imply one strip of 60 images."""
+
+ALPHA = 0.05
+LINEAR_R_SQUARED = 0.95
+NEAR_RELATIVE = 1.6
+"""Corrected parallax at most this many times what relative orientation leaves."""
+
+
+@dataclass(frozen=True)
+class AreaFindings:
+    """Measured values of one area.
+
+    Attributes
+    ----------
+    pos_mm, independent_mm, dependent_mm
+        Mean RMS y-parallax of all models, at image scale.
+    held_angles_mm, held_omega_mm, held_phi_mm, held_kappa_mm
+        The same after relative orientation with POS angles of the right image held.
+    corrected_omega_mm, corrected_phi_mm, corrected_kappa_mm
+        The same after taking the line of one angle off.
+    strip_omega_r_squared, strip_phi_p, strip_kappa_p
+        OLS over strip `STRIP`.
+    corrected_angles
+        Angles that the rules chose, joined by "+"; empty if none.
+    pos_horizontal_m, pos_vertical_m, corrected_horizontal_m, corrected_vertical_m
+        RMSE of the check points, mean difference removed, from POS and with the omega line taken
+        off (Table 4).
+    ols_covers, gls_covers
+        Share of the three angles whose 95 % interval of the slope over strip `STRIP` holds the
+        simulated drift.
+    """
+
+    area: int
+    pos_mm: float
+    independent_mm: float
+    dependent_mm: float
+    held_angles_mm: float
+    held_omega_mm: float
+    held_phi_mm: float
+    held_kappa_mm: float
+    corrected_omega_mm: float
+    corrected_phi_mm: float
+    corrected_kappa_mm: float
+    strip_omega_r_squared: float
+    strip_phi_p: float
+    strip_kappa_p: float
+    corrected_angles: str
+    pos_horizontal_m: float
+    pos_vertical_m: float
+    corrected_horizontal_m: float
+    corrected_vertical_m: float
+    ols_covers: float
+    gls_covers: float
+
+    @property
+    def angles_dominate(self) -> bool:
+        """Angles alone bring the parallax down: independent and dependent orientation agree."""
+        agree = abs(self.independent_mm - self.dependent_mm) < NOTICEABLE * self.dependent_mm
+        return agree and self.independent_mm < (1.0 - NOTICEABLE) * self.pos_mm
+
+    @property
+    def kept_by(self) -> dict[str, float]:
+        """Parallax that holding one angle keeps, as a share of what holding all three keeps."""
+        kept: dict[str, float] = {angle: getattr(self, f"held_{angle}_mm") for angle in ANGLE_NAMES}
+        all_three = self.held_angles_mm - self.dependent_mm
+        return {angle: (value - self.dependent_mm) / all_three for angle, value in kept.items()}
+
+    @property
+    def omega_is_the_source(self) -> bool:
+        """Holding omega keeps what holding all keeps; holding phi or kappa keeps little."""
+        kept = self.kept_by
+        return (
+            self.held_angles_mm > (1.0 + NOTICEABLE) * self.dependent_mm
+            and kept["omega"] > 1.0 - NOTICEABLE
+            and max(kept["phi"], kept["kappa"]) < NOTICEABLE
+        )
+
+    @property
+    def only_omega_is_linear(self) -> bool:
+        """Table 3: omega follows time almost without scatter, phi and kappa do not follow it."""
+        return (
+            self.strip_omega_r_squared > LINEAR_R_SQUARED
+            and self.strip_phi_p > ALPHA
+            and self.strip_kappa_p > ALPHA
+        )
+
+    @property
+    def omega_alone_is_chosen(self) -> bool:
+        """The paper's rules correct omega and nothing else."""
+        return self.corrected_angles == "omega"
+
+    @property
+    def only_omega_helps(self) -> bool:
+        """Figure 3: the omega line brings the parallax near relative orientation's, others none."""
+        unchanged = (1.0 - NOTICEABLE) * self.pos_mm
+        return (
+            self.corrected_omega_mm < unchanged
+            and self.corrected_omega_mm <= NEAR_RELATIVE * self.independent_mm
+            and min(self.corrected_phi_mm, self.corrected_kappa_mm) > unchanged
+        )
+
+    @property
+    def more_than_relative_is_left(self) -> bool:
+        """The corrected POS leaves noticeably more parallax than relative orientation."""
+        return self.corrected_omega_mm > (1.0 + NOTICEABLE) * self.independent_mm
+
+    @property
+    def check_points_improve(self) -> bool:
+        """Table 4: the RMSE falls, horizontally and vertically."""
+        return (
+            self.corrected_horizontal_m < self.pos_horizontal_m
+            and self.corrected_vertical_m < self.pos_vertical_m
+        )
+
+
+CRITERIA = (
+    "angles_dominate",
+    "omega_is_the_source",
+    "only_omega_is_linear",
+    "omega_alone_is_chosen",
+    "only_omega_helps",
+    "check_points_improve",
+    "more_than_relative_is_left",
+)
+"""Names of the yes-or-no properties of `AreaFindings`."""
+
+
+def find(area: int, results: Results, scenario: Scenario) -> AreaFindings:
+    """The findings of one area.
+
+    Parameters
+    ----------
+    area
+        1, 2 or 3.
+    results
+        Results dictionary of the area, analysed by the paper's rules in the ground frame.
+    scenario
+        What was simulated: the true drifts.
+    """
+    verdict = results["verdict"]
+    points = {name: _check_points(results, name) for name in ("pos", "omega")}
+    line = {angle: _line(results, angle) for angle in ANGLE_NAMES}
+    return AreaFindings(
+        area=area,
+        pos_mm=verdict["raw_mm"],
+        independent_mm=verdict["relative_mm"],
+        dependent_mm=_mean_mm(results, "parallax", method="dependent"),
+        **{
+            f"held_{name}_mm": _mean_mm(results, "error_sources", fixed=name)
+            for name in ("angles", *ANGLE_NAMES)
+        },
+        **{
+            f"corrected_{name}_mm": _mean_mm(results, "corrected_parallax", corrected=name)
+            for name in ANGLE_NAMES
+        },
+        strip_omega_r_squared=line["omega"]["r_squared"],
+        strip_phi_p=line["phi"]["p_value"],
+        strip_kappa_p=line["kappa"]["p_value"],
+        corrected_angles="+".join(verdict["corrected_angles"]),
+        pos_horizontal_m=points["pos"]["rmse_horizontal_m"],
+        pos_vertical_m=points["pos"]["rmse_vertical_m"],
+        corrected_horizontal_m=points["omega"]["rmse_horizontal_m"],
+        corrected_vertical_m=points["omega"]["rmse_vertical_m"],
+        ols_covers=_coverage(line, scenario, "slope_ci95"),
+        gls_covers=_coverage(line, scenario, "gls_slope_ci95"),
+    )
+
+
+def _line(results: Results, angle: str) -> Row:
+    """Regression of one angle over strip `STRIP`."""
+    return only_row(results, "regression", angle=angle, scope=STRIP, frame="ground")
+
+
+def _coverage(lines: Mapping[str, Row], scenario: Scenario, interval: str) -> float:
+    """Share of the lines whose interval holds the simulated drift."""
+    inside = []
+    for angle, line in lines.items():
+        low, high = line[interval]
+        inside.append(bool(low <= getattr(scenario.errors, angle).drift_rad_per_s <= high))
+    return sum(inside) / len(inside)
+
+
+def _check_points(results: Results, orientation: str) -> Row:
+    return only_row(results, "check_points", orientation=orientation, translation_removed=True)
+
+
+def _mean_mm(results: Results, key: str, **conditions: object) -> float:
+    """Mean over all models: strip means weighted by the models of their strips."""
+    strips = list(_rows(results, key, conditions))
+    n_models = sum(row["n_models"] for row in strips)
+    return float(sum(row["n_models"] * row["mean_mm"] for row in strips) / n_models)
+
+
+def only_row(results: Results, key: str, **conditions: object) -> Row:
+    """The one row of a list of the results whose values equal the conditions."""
+    (row,) = _rows(results, key, conditions)
+    return row
+
+
+def _rows(results: Results, key: str, conditions: Mapping[str, object]) -> Iterator[Row]:
+    for row in results[key]:
+        if all(row[name] == value for name, value in conditions.items()):
+            yield row

@@ -1,0 +1,37 @@
+"""One run of the experiment: the three areas, what they show, and the comparison with print."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from posstats.experiment.areas import area_scenario
+from posstats.experiment.comparison import Compared, compare
+from posstats.experiment.findings import AreaFindings, find
+
+Results = Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Reproduction:
+    """A run of the experiment.
+
+    Attributes
+    ----------
+    seed
+        Of the run; see `posstats.experiment.areas.area_seed`.
+    results, findings
+        By area.
+    compared
+        Every printed number beside the reproduced one.
+    """
+
+    seed: int
+    results: Mapping[int, Results]
+    findings: Mapping[int, AreaFindings]
+    compared: tuple[Compared, ...]
+
+
+def reproduction(results: Mapping[int, Results], seed: int) -> Reproduction:
+    """Compare the results dictionaries of the three areas, by area, with the printed numbers."""
+    findings = {area: find(area, each, area_scenario(area)) for area, each in results.items()}
+    return Reproduction(seed, results, findings, compare(results))

@@ -1,0 +1,44 @@
+"""The experiment repeated with many seeds: how often each finding comes out (``seeds.csv``).
+
+The file is written by ``benchmarks/paper_seeds.py``; a test repeats some of its rows.
+"""
+
+import csv
+from collections.abc import Iterable
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import get_type_hints
+
+from posstats.experiment.findings import AreaFindings
+
+_TYPES = get_type_hints(AreaFindings)
+
+
+@lru_cache(maxsize=1)
+def repeated() -> dict[int, tuple[AreaFindings, ...]]:
+    """Findings by area, one per seed, in the order of the seeds."""
+    text = (files("posstats") / "experiment" / "seeds.csv").read_text(encoding="utf-8")
+    found: dict[int, list[AreaFindings]] = {}
+    for row in csv.DictReader(text.splitlines()):
+        each = AreaFindings(**{name: _TYPES[name](row[name]) for name in _TYPES})
+        found.setdefault(each.area, []).append(each)
+    return {area: tuple(each) for area, each in found.items()}
+
+
+def share(criterion: str, area: int) -> float:
+    """Share of the seeds for which a criterion (a name of `CRITERIA`) holds in an area."""
+    found = repeated()[area]
+    return sum(bool(getattr(each, criterion)) for each in found) / len(found)
+
+
+def write(found: Iterable[tuple[int, AreaFindings]], path: Path) -> None:
+    """Write pairs of seed and findings as the CSV file that `repeated` reads."""
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, ["seed", *_TYPES], lineterminator="\n")
+        writer.writeheader()
+        for seed, each in found:
+            values = asdict(each).items()
+            rounded = {k: f"{v:.9g}" if isinstance(v, float) else v for k, v in values}
+            writer.writerow({"seed": seed} | rounded)

@@ -1,0 +1,36 @@
+"""The document of a block's report."""
+
+from . import figures, sections
+from .document import SIMULATED, ReportDocument, numbered
+from .figure_style import Drawing
+from .key_figures import key_figures
+from .results_view import Results
+from .verdict import is_coarse, paragraph
+
+
+def build(results: Results, drawings: dict[str, Drawing] | None = None) -> ReportDocument:
+    """Make the document of a block's report.
+
+    Parameters
+    ----------
+    results
+        The results dictionary (``results.json``), the only source of the report.
+    drawings
+        The figures of the results, if they have been drawn already.
+    """
+    opening, parts = sections.block_report(results, drawings or figures.draw(results))
+    shown, numbered_parts = numbered(opening, parts)
+    block = results["block"]
+    return ReportDocument(
+        title="Vertical parallax and POS angle errors",
+        subject=str(block["name"]),
+        subtitle=sections.subtitle(results),
+        mark=SIMULATED if block.get("simulated") else "",
+        created=str(results.get("created") or "").partition("T")[0],
+        version=str(results.get("posstats_version") or ""),
+        verdict=paragraph(results),
+        coarse=is_coarse(results),
+        key_figures=key_figures(results),
+        opening=shown,
+        sections=numbered_parts,
+    )

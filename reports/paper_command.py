@@ -1,0 +1,63 @@
+"""`posstats paper`: the first paper's experiment, simulated, analysed, compared and reported."""
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from posstats import __version__
+from posstats.experiment.findings import CRITERIA
+from posstats.experiment.reproduction import Reproduction, reproduction
+from posstats.experiment.seeds import repeated, share
+
+from . import paper_document
+from .output import staged_folder
+from .paper_areas import run_areas
+from .paper_conclusions import Conclusion, conclusions
+from .report import write_pages
+from .timestamp import now
+
+SCHEMA = "posstats-comparison/1"
+
+
+def reproduce_paper(out: Path, seed: int, *, pdf: bool) -> Iterator[str]:
+    """Write the reproduction into `out`; yields the lines of the terminal summary."""
+    created = now()
+    with staged_folder(out) as stage:
+        areas = run_areas(stage, seed, created)
+        run = reproduction({area: each.results for area, each in areas.items()}, seed)
+        found = conclusions(run)
+        (stage / "comparison.json").write_text(_comparison(run, found, created), encoding="utf-8")
+        figures = {area: each.figures for area, each in areas.items()}
+        document = paper_document.build(run, found, figures, created)
+        missing = write_pages(document, stage / "paper", pdf=pdf)
+    for number, each in enumerate(found, start=1):
+        yield f"{number}. {each.title}: {'holds' if each.holds else 'DOES NOT HOLD'}"
+    yield ""
+    if missing:
+        yield missing
+    yield f"report: {out / 'paper.html'}" + (
+        f", {out / 'paper.pdf'}" if pdf and not missing else ""
+    )
+
+
+def _comparison(run: Reproduction, found: Sequence[Conclusion], created: str) -> str:
+    """The text of comparison.json."""
+    values = {
+        "schema": SCHEMA,
+        "posstats_version": __version__,
+        "created": created,
+        "simulated": True,
+        "seed": run.seed,
+        "rows": [asdict(each) for each in run.compared],
+        "conclusions": [
+            {"text": each.text, "holds": each.holds, "evidence": " ".join(each.evidence)}
+            for each in found
+        ],
+        "seed_shares": [
+            {"finding": name, "area": area, "n_seeds": len(repeated()[area]),
+             "share": share(name, area)}
+            for name in CRITERIA for area in run.results
+        ],
+    }  # fmt: skip
+    return json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
