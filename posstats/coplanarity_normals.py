@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.compiled import inner_kernel, kernel
-from posstats.kernel_algebra import add_products
+from posstats.kernel_algebra import Six, add_products, six
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -86,14 +86,7 @@ def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _six(row: _Floats, first: int) -> _Six:
-    return (
-        row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
-    )  # fmt: skip
-
-
-@inner_kernel
-def _add_six(row: _Floats, first: int, factor: float, values: _Six) -> None:
+def _add_six(row: _Floats, first: int, factor: float, values: Six) -> None:
     """Add a multiple of six numbers to a row, from `first` on."""
     row[first] += factor * values[0]
     row[first + 1] += factor * values[1]
@@ -122,7 +115,7 @@ def _add_pair(
     `by_image` (4,) that of D. Of `normals` only the upper triangle becomes complete.
     """
     last = shared.shape[1] - 1
-    a, b = _six(row, 0), _six(row, 6)
+    a, b = six(row, 0), six(row, 6)
     for i in range(6):
         scaled_left, scaled_right = weight * row[i], weight * row[6 + i]
         _add_six(normals[6 * left + i], 6 * left, scaled_left, a)
@@ -241,37 +234,6 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 
 
 @inner_kernel
-<<<<<<< HEAD
-=======
-def _plus(c: _Six, f: float, w: _Six) -> _Six:
-    return (
-        c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
-        c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
-    )  # fmt: skip
-
-
-@inner_kernel
-def _add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
-    """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
-
-    rows: (n, width) leading part. Two rows of a block at a time are summed in registers.
-    """
-    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    for first in range(0, width, 6):
-        for second in range(first, width, 6):
-            for i in range(first, first + 6, 2):
-                upper, lower = zero, zero
-                for r in range(n):
-                    row = _six(rows[r], second)
-                    upper = _plus(upper, rows[r, i], row)
-                    lower = _plus(lower, rows[r, i + 1], row)
-                for j in range(6):
-                    matrix[i, second + j] += sign * upper[j]
-                    matrix[i + 1, second + j] += sign * lower[j]
-
-
-@inner_kernel
->>>>>>> main
 def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
     """Take (C^-1 H)'(C^-1 g) from the right side; |C^-1 g|^2 is returned."""
     width = right_side.shape[0]

@@ -14,7 +14,7 @@ from posstats.compiled import inner_kernel, summing_kernel
 _Floats = NDArray[np.float64]
 Vector = Any  # three numbers: a row of an array, or a tuple
 Matrix = Any  # three such rows
-_Six = Any  # a tuple of six numbers, which stays in registers
+Six = Any  # a tuple of six numbers, which stays in registers
 
 # Smallest pivot of a matrix scaled to a unit diagonal that can be solved.
 _SINGULAR_PIVOT = 1e-14
@@ -90,14 +90,15 @@ def _substitute(factor: _Floats, scale: _Floats, gradient: _Floats, step: _Float
 
 
 @inner_kernel
-def _six(row: _Floats, first: int) -> _Six:
+def six(row: _Floats, first: int) -> Six:
+    """Six numbers of a row, from `first` on."""
     return (
         row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
     )  # fmt: skip
 
 
 @inner_kernel
-def _plus(c: _Six, f: float, w: _Six) -> _Six:
+def _plus(c: Six, f: float, w: Six) -> Six:
     return (
         c[0] + f * w[0], c[1] + f * w[1], c[2] + f * w[2],
         c[3] + f * w[3], c[4] + f * w[4], c[5] + f * w[5],
@@ -116,7 +117,7 @@ def add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float
             for i in range(first, first + 6, 2):
                 upper, lower = zero, zero
                 for r in range(n):
-                    row = _six(rows[r], second)
+                    row = six(rows[r], second)
                     upper = _plus(upper, rows[r, i], row)
                     lower = _plus(lower, rows[r, i + 1], row)
                 for j in range(6):
