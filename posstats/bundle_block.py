@@ -10,6 +10,7 @@ from posstats.bundle_observations import PosObservations
 from posstats.bundle_parameters import CommonParameter, Exposures
 from posstats.bundle_problem import BundleProblem, Control
 from posstats.collinearity import INTERSECTED, intersect_rays
+from posstats.errors import GeometryError
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
@@ -34,10 +35,14 @@ def bundle_problem(
     control
         (g,) which of the block's ground points are control; those that are no check points
         where None.
+
+    Raises
+    ------
+    GeometryError
+        If Bauer's parameters are wanted and a pixel size is not known.
     """
     pos, ties = block.orientations, block.tie_points
     distance = np.array([camera.principal_distance_px for camera in block.cameras])
-    pixel = [camera.pixel_size_mm for camera in block.cameras]
     ground = _start(block, distance)
     used = np.isfinite(ground[ties.point, 0])
     return BundleProblem(
@@ -47,7 +52,7 @@ def bundle_problem(
         ground_from_image=pos.ground_from_image,
         position_m=pos.position_m,
         distance_px=distance,
-        mm_per_px=np.array([np.nan if size is None else size for size in pixel]),
+        mm_per_px=_pixel_sizes(block, parameters),
         point=ties.point[used],
         image=ties.image[used],
         xy_px=ties.xy_px[used],
@@ -59,6 +64,14 @@ def bundle_problem(
         control=_control(block, control),
         parameters=tuple(parameters),
     )
+
+
+def _pixel_sizes(block: Block, parameters: Sequence[CommonParameter]) -> _Floats:
+    """(c,) mm; 1 where not known and not needed."""
+    sizes = [camera.pixel_size_mm for camera in block.cameras]
+    if None in sizes and any(parameter.name.startswith("bauer") for parameter in parameters):
+        raise GeometryError("Bauer's parameters count in millimetres: a pixel size is missing")
+    return np.array([1.0 if size is None else size for size in sizes])
 
 
 def _start(block: Block, distance_px: _Floats) -> _Floats:

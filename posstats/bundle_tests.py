@@ -138,7 +138,7 @@ def global_test(result: AdjustedBundle) -> GlobalTest:
 
 
 def parameter_tests(problem: BundleProblem, result: AdjustedBundle) -> tuple[ParameterTest, ...]:
-    """t tests of the additional parameters with the degrees of freedom of the adjustment."""
+    """Student's test of every additional parameter, with the adjustment's degrees of freedom."""
     stated = np.sqrt(np.diagonal(result.common_covariance))
     sigma = result.sigma0 * stated
     t = result.common / sigma
