@@ -1,7 +1,7 @@
 """Variance components of the groups of observations of a bundle adjustment.
 
 The factor of a group is v'Pv over its redundancy; its expectation is 1 if all stated weights are
-right, and its relative sampling error about sqrt(2 / redundancy). Weights are estimated by
+right, and its relative sampling error at least sqrt(2 / redundancy). Weights are estimated by
 rescaling and adjusting again (Foerstner's form of the iterated estimation): at the solution every
 factor is 1.
 """
@@ -16,7 +16,7 @@ from posstats.bundle_problem import AdjustedBundle, BundleProblem
 
 GROUPS = ("image", "gnss", "imu", "control")
 LEAST_REDUNDANCY = 10.0
-"""Of a group whose weight is estimated: below, the factor errs by more than 45 %."""
+"""Of a group whose weight is estimated: below, the factor errs by 45 % and more."""
 LEAST_FACTOR = 1e-6
 """Residuals a thousand times smaller than stated are those of perfect data: no weight follows."""
 MOST_ROUNDS = 20
