@@ -200,7 +200,8 @@ def _image_effects(problem: BundleProblem) -> _Floats:
         "brown_p2": np.hypot(2.0 * a * b, r2 + 2.0 * a**2),
     }  # fmt: skip
     scale = (c / problem.sigma_px)[:, None]
-    return scale * np.stack([lengths[name] for name in CAMERA_PARAMETERS], axis=1)
+    effects: _Floats = scale * np.stack([lengths[name] for name in CAMERA_PARAMETERS], axis=1)
+    return effects
 
 
 def correlations(result: AdjustedBundle) -> Correlations:

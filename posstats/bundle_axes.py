@@ -1,0 +1,73 @@
+"""Images whose image coordinates have axes exchanged or reversed, found before any adjustment.
+
+Start orientations are near enough for the coplanarity of rays: with the right axes the parallax
+of an image against its neighbours is that of the errors of POS, with wrong ones it is as large as
+the image.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.bundle_problem import BundleProblem
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.intp]
+
+_LEAST_PAIRS = 6
+_BETTER = 0.1  # the parallax of other axes over that of the measured ones
+_VARIANTS = np.array(
+    [m * [[s], [t]] for m in (np.eye(2), np.eye(2)[::-1]) for s in (1, -1) for t in (1, -1)]
+)
+
+
+def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
+    """Images that one of the seven other choices of axes fits ten times better.
+
+    The parallax is the median over the pairs of an image's rays with the other rays of their
+    points; an image needs six pairs. A reversed x alone is not seen along a strip, where it makes
+    no parallax; nor are axes that are wrong in all images.
+    """
+    first, second = _pairs(problem.point)
+    first, second = np.append(first, second), np.append(second, first)
+    image = problem.image[first]
+    order = np.argsort(image, kind="stable")
+    first, second, image = first[order], second[order], image[order]
+    numbers, starts = np.unique(image, return_index=True)
+    parallax = [_parallax(problem, first, second, axes) for axes in _VARIANTS]
+    wrong = []
+    for number, rows in zip(numbers, np.split(np.arange(len(image)), starts[1:]), strict=True):
+        median = [float(np.median(each[rows])) for each in parallax]
+        if len(rows) >= _LEAST_PAIRS and min(median) < _BETTER * median[0]:
+            wrong.append(number)
+    return np.array(wrong, dtype=np.intp)
+
+
+def _pairs(point: _Ints) -> tuple[_Ints, _Ints]:
+    """Pairs of rays of the same point, next and next but one in the order of the rays."""
+    order = np.argsort(point, kind="stable")
+    pairs = []
+    for step in (1, 2):
+        same = point[order[step:]] == point[order[:-step]]
+        pairs.append((order[:-step][same], order[step:][same]))
+    return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
+
+
+def _parallax(problem: BundleProblem, first: _Ints, second: _Ints, axes: _Floats) -> _Floats:
+    """(q,) sine of the angle of the second rays to the planes of the first and the base."""
+    one = _directions(problem, problem.xy_px[first] @ axes.T, first)
+    other = _directions(problem, problem.xy_px[second], second)
+    centre = problem.position_m
+    normal = np.cross(centre[problem.image[second]] - centre[problem.image[first]], one)
+    length = np.linalg.norm(normal, axis=1) * np.linalg.norm(other, axis=1)
+    product = np.abs(np.einsum("qi,qi->q", normal, other))
+    sine: _Floats = np.divide(product, length, out=np.zeros_like(product), where=length > 0.0)
+    return sine
+
+
+def _directions(problem: BundleProblem, xy_px: _Floats, ray: _Ints) -> _Floats:
+    """(q, 3) in the ground frame."""
+    image = problem.image[ray]
+    distance = problem.distance_px[problem.exposures.camera[image]]
+    vectors = np.column_stack([xy_px, -distance])
+    turned: _Floats = np.einsum("qij,qj->qi", problem.ground_from_image[image], vectors)
+    return turned
