@@ -1,8 +1,8 @@
 """The POS-supported self-calibrating bundle block adjustment (second source paper).
 
 Image coordinates, antenna positions, IMU angles, control points and prior values of additional
-parameters are adjusted together by least squares: Gauss-Newton, damped after Levenberg and
-Marquardt where a step would raise the weighted sum of squares.
+parameters are adjusted together by least squares: Gauss-Newton, where a step would raise the
+weighted sum of squares shortened, or damped after Levenberg and Marquardt.
 """
 
 from collections.abc import Callable
@@ -18,12 +18,15 @@ from posstats.errors import ConvergenceError, GeometryError
 
 _Floats = NDArray[np.float64]
 
-MAX_ITERATIONS = 50
+MAX_ITERATIONS = 100
 _SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together
 _ROUGHLY = 0.1  # mean square step in standard deviations from which on weights are settled
-_FIRST_DAMPING = 1e-4
+_FIRST_DAMPING = 1e-2
 _LEAST_DAMPING = 1e-7
 _MOST_DAMPING = 1e8
+# Parts of a step, and whether points are intersected anew after it: turns of a weakly held block
+# by degrees are no straight lines, and damping would take hundreds of steps.
+_TRIALS = ((1.0, False), (1.0, True), (0.25, True))
 _HUBER = 1.345
 _REJECTION = 3.5
 _NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
@@ -45,7 +48,7 @@ def adjust(
     Raises
     ------
     ConvergenceError
-        If it does not settle in `MAX_ITERATIONS` steps.
+        If it does not settle in `MAX_ITERATIONS` steps, trials that failed counted.
     UndeterminedError
         If observations and priors do not determine every orientation and parameter.
     GeometryError
@@ -95,19 +98,23 @@ class _Iteration:
     def step(self, system: BundleSystem, equations: Equations) -> tuple[Equations, float]:
         """The next equations, and the square of the step to them in standard deviations.
 
-        A damped step has no such length: it is infinite.
+        A damped step, or part of one, has no such length: it is infinite.
         """
         while True:
-            self._counted(equations)
             damping = equations.damping
-            state, square = system.step(equations)
             eased = 0.1 * damping if damping > 10.0 * _LEAST_DAMPING else 0.0
-            after = system.equations(state, eased)
-            # the sums of squares before and after a settled step differ by rounding only
-            allowed = np.inf if square < _SETTLED**2 else equations.cost
-            if after.determined.all() and after.cost < allowed:
-                return after, square if damping == 0.0 else np.inf
-            damping = max(10.0 * damping, _FIRST_DAMPING)
+            for fraction, anew in _TRIALS:
+                self._counted(equations)
+                state, square = system.step(equations, fraction)
+                after = system.equations(system.intersected(state) if anew else state, eased)
+                # the sums of squares before and after a settled step differ by rounding only
+                allowed = np.inf if square < _SETTLED**2 else equations.cost
+                if after.determined.all() and after.cost < allowed:
+                    whole = damping == 0.0 and fraction == 1.0
+                    return after, square if whole else np.inf
+                if not np.isfinite(after.cost):
+                    break
+            damping = 10.0 * damping if damping > 0.0 else _FIRST_DAMPING
             equations = system.equations(equations.state, damping)
 
     def _counted(self, equations: Equations) -> None:

@@ -29,6 +29,7 @@ _Ints = NDArray[np.intp]
 
 # Smallest pivot, of a point's normal equations scaled to a unit diagonal, that determines it.
 _SINGULAR_PIVOT = 1e-12
+_INTERSECTION_STEPS = 3
 _BATCH = 16  # points whose T are collected before they are multiplied
 
 
@@ -469,6 +470,68 @@ def move_points(
             side[:] = 0.0
         for i in range(3):
             new_position_m[point, i] = ground.position_m[point, i] - side[i, 0]
+
+
+@inlined_kernel
+def _square_sum(
+    point: int,
+    groups: PointGroups,
+    measured: Measured,
+    ground: Ground,
+    images: Images,
+    cameras: Cameras,
+    ray: Ray,
+    normals: _Floats,
+    side: _Floats,
+) -> float:
+    """The sum v'Wv of a point's rays and control, infinite behind a camera; overwrites N, n."""
+    total = add_control(point, ground, normals, side)
+    for k in range(groups.first_ray[point], groups.first_ray[point + 1]):
+        if measured.weight[k] > 0.0:
+            image = groups.ray_image[k]
+            if not linearise(k, point, image, measured, ground.position_m, images, cameras, ray):
+                return np.inf
+            squares = ray.residual[0] ** 2 + ray.residual[1] ** 2
+            total += measured.weight[k] * squares
+    return total
+
+
+@kernel
+def intersect_points(first_group: int, last_group: int, network: Network) -> None:
+    """Intersect the points of some groups anew, each for itself, the images held.
+
+    Parameters are those of `accumulate`; the ground positions are the start, and overwritten.
+    """
+    groups, measured, ground, images, cameras = network
+    most = 0
+    for group in range(first_group, last_group):
+        point = groups.offsets[group]
+        most = max(most, groups.first_ray[point + 1] - groups.first_ray[point])
+    ray, normals, side = new_ray(0), np.empty((3, 3)), np.empty((3, 1))
+    rows, before = np.empty((3, 6 * most)), np.empty(3)
+    for point in range(groups.offsets[first_group], groups.offsets[last_group]):
+        least = _square_sum(
+            point, groups, measured, ground, images, cameras, ray, normals, side[:, 0]
+        )
+        for _ in range(_INTERSECTION_STEPS):
+            normals_of_point(
+                point, groups, measured, ground, images, cameras, ray, normals, side[:, 0], rows
+            )
+            if not factorise_point(normals):
+                break
+            solve_lower(normals, side)
+            solve_upper(normals, side)
+            for i in range(3):
+                before[i] = ground.position_m[point, i]
+                ground.position_m[point, i] -= side[i, 0]
+            after = _square_sum(
+                point, groups, measured, ground, images, cameras, ray, normals, side[:, 0]
+            )
+            if not after < least:
+                for i in range(3):
+                    ground.position_m[point, i] = before[i]
+                break
+            least = after
 
 
 @kernel

@@ -22,6 +22,7 @@ from posstats.bundle_normals import (
     Network,
     Reduced,
     accumulate,
+    intersect_points,
     move_points,
     ray_residuals,
 )
@@ -194,8 +195,8 @@ class BundleSystem:
             pos,
         )
 
-    def step(self, equations: Equations) -> tuple[State, float]:
-        """The state after a (damped) Gauss-Newton step, and g'N^-1 g: its square in sigma.
+    def step(self, equations: Equations, fraction: float = 1.0) -> tuple[State, float]:
+        """The state after (part of) a step, and g'N^-1 g: the square of all of it in sigma.
 
         Raises
         ------
@@ -213,6 +214,7 @@ class BundleSystem:
         square = equations.gain - float(
             (image_step * equations.images).sum() + common_step @ equations.common
         )
+        image_step, common_step = fraction * image_step, fraction * common_step
         moved, network = np.empty_like(state.ground_m), self._network(state)
         camera_step = common_step[self.effects.camera]
 
@@ -227,6 +229,17 @@ class BundleSystem:
             moved,
             state.common + common_step,
         ), square
+
+    def intersected(self, state: State) -> State:
+        """The state with its points intersected anew."""
+        state = replace(state, ground_m=state.ground_m.copy())
+        network = self._network(state)
+
+        def intersect(part: tuple[int, int]) -> None:
+            intersect_points(*part, network)
+
+        _in_threads(intersect, self.rays.parts)
+        return state
 
     def precision(self, equations: Equations) -> tuple[SelectedInverse, PointPrecision]:
         """Covariances of all unknowns, and the redundancy numbers of the rays, by group.

@@ -22,6 +22,7 @@ from posstats.bundle_parameters import (
     drift_parameters,
 )
 from posstats.bundle_problem import Control
+from posstats.bundle_system import BundleSystem
 from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
 from posstats.rotation import (
     rotation_from_vector,
@@ -352,3 +353,22 @@ def test_progress_is_told_and_an_iteration_that_does_not_settle_is_refused(monke
     monkeypatch.setattr("posstats.bundle.MAX_ITERATIONS", 1)
     with pytest.raises(ConvergenceError, match="did not settle in 1 step"):
         adjust(problem)
+
+
+def test_points_are_intersected_where_their_rays_say():
+    """Against each point alone by scipy: with the images held, no point can do better."""
+    problem, _ = small_problem(n_control=0)
+    start = replace(problem, ground_m=problem.ground_m + 5.0)
+    system = BundleSystem.of(start)
+    state = system.intersected(system.start)
+    for at, point in enumerate(system.rays.point[:10]):
+        rays = problem.point == point
+        image, xy = problem.image[rays], problem.xy_px[rays]
+
+        def residuals(ground, image=image, xy=xy):
+            line = ground - problem.position_m[image]
+            u = np.einsum("mji,mj->mi", problem.ground_from_image[image], line)
+            return (-C * u[:, :2] / u[:, 2:] - xy).ravel()
+
+        alone = least_squares(residuals, problem.ground_m[point], xtol=1e-14, gtol=1e-14)
+        np.testing.assert_allclose(state.ground_m[at], alone.x, rtol=0, atol=1e-4)
