@@ -105,10 +105,7 @@ def check_point_residuals(
     name
         Name of these orientations in the results.
     """
-    given = _check_points(block.ground_points)
-    wanted = set(given.point)
-    number = {point: k for k, point in enumerate(block.tie_points.point_id) if point in wanted}
-    points = np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
+    given, points = surveyed_check_points(block)
     computed = intersect(
         block.tie_points,
         orientations,
@@ -116,13 +113,45 @@ def check_point_residuals(
         points,
         sigma_image_px=block.accuracy.image_px,
     )
+    return differences(block, name, given, computed, computed.covariance_with_orientation_m2)
+
+
+def surveyed_check_points(block: Block) -> tuple[GroundPoints, _Ints]:
+    """The g check points, and (g,) their indices among the tie points; -1: in no image."""
+    given = _check_points(block.ground_points)
+    wanted = set(given.point)
+    number = {point: k for k, point in enumerate(block.tie_points.point_id) if point in wanted}
+    return given, np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
+
+
+def differences(
+    block: Block,
+    name: str,
+    given: GroundPoints,
+    computed: IntersectedPoints,
+    covariance_m2: _Floats,
+) -> CheckPointResiduals:
+    """Computed minus surveyed positions, in crs axes.
+
+    Parameters
+    ----------
+    block
+        Its frame turns positions into crs axes.
+    name
+        Name of the orientations.
+    given, computed
+        g check points, computing frame.
+    covariance_m2
+        (g, 3, 3) of the computed positions.
+    """
     given_m = block.frame.to_crs(given.position_m)
+    variance = _variance_along_crs(block, covariance_m2, given_m)
     return CheckPointResiduals(
         orientation=name,
         point=given.point,
         given_m=given_m,
         difference_m=_to_crs(block, computed) - given_m,
-        sigma_m=np.sqrt(_intersection_variance(block, computed, given_m) + _survey_variance(given)),
+        sigma_m=np.sqrt(variance + _survey_variance(given)),
         n_rays=computed.n_rays,
         rms_px=computed.rms_px,
         status=computed.status,
@@ -187,11 +216,10 @@ def _to_crs(block: Block, computed: IntersectedPoints) -> _Floats:
     return position
 
 
-def _intersection_variance(block: Block, computed: IntersectedPoints, given_m: _Floats) -> _Floats:
-    """(g, 3) variances of the computed positions along the crs axes, m2."""
+def _variance_along_crs(block: Block, covariance_m2: _Floats, given_m: _Floats) -> _Floats:
+    """(g, 3) variances along the crs axes, m2, of covariances (g, 3, 3) in the computing frame."""
     axes = block.frame.computing_from_crs_axes(given_m)
-    covariance = computed.covariance_with_orientation_m2
-    variance: _Floats = np.einsum("gji,gjk,gki->gi", axes, covariance, axes)
+    variance: _Floats = np.einsum("gji,gjk,gki->gi", axes, covariance_m2, axes)
     return variance
 
 

@@ -1,0 +1,368 @@
+"""The chain from a block to its adjustment: the only place that knows the order of the steps.
+
+Control is chosen, the block adjusted robustly without it and with weak POS, which finds rays that
+contradict each other whatever control and POS say; then data snooping judges every observation,
+weights are estimated on request, tests follow, and at last the points that took no part are
+intersected from the adjusted orientations.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
+from posstats.adjustment_settings import AdjustmentSettings, DriftPriors, additional_parameters
+from posstats.block import Block, GroundPoints, Orientations
+from posstats.bundle import adjust
+from posstats.bundle_axes import images_with_wrong_axes
+from posstats.bundle_block import bundle_problem
+from posstats.bundle_check_points import intersect_apart
+from posstats.bundle_diagnosis import GROSS, likely_mistake
+from posstats.bundle_observability import Undetermined, singular_message, undetermined
+from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
+from posstats.bundle_snooping import Snooping, snoop
+from posstats.bundle_tests import (
+    Correlations,
+    GlobalTest,
+    LocalTest,
+    ParameterTest,
+    correlations,
+    global_test,
+    local_tests,
+    parameter_tests,
+)
+from posstats.bundle_weights import EstimatedWeights, estimate_weights
+from posstats.control import ControlChoice, chosen_control
+from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
+
+_Floats = NDArray[np.float64]
+_Bools = NDArray[np.bool_]
+Progress = Callable[[str, float], object]
+
+__all__ = [
+    "Adjustment",
+    "AdjustmentSettings",
+    "ControlChoice",
+    "DriftPriors",
+    "adjust_block",
+]
+
+ORIENTATION = "bundle"
+_FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
+_PRIOR_BLUNDER = 4.0  # standard deviations beyond which measurements contradict a prior
+_WEAK_POS = 100.0  # times the stated sigmas, where rays are judged by themselves
+
+
+@dataclass(frozen=True, eq=False)
+class Adjustment:
+    """An adjusted block.
+
+    Attributes
+    ----------
+    block
+        Its ground points have the roles of the adjustment.
+    settings
+        What was asked for.
+    stated
+        The problem of the block before anything was rejected or reweighted.
+    rejected
+        (m,) rays of it that the robust adjustment took out.
+    problem, adjusted
+        Of the last adjustment.
+    overall, parameters, common_correlations, single
+        Tests of the whole, of the additional parameters, and of the observations by group.
+    snooping
+        What data snooping found; its indices are those of `stated`.
+    weights
+        Estimated ones, or None.
+    undetermined
+        What the measurements leave open.
+    orientations
+        Adjusted, projection centres, system of the block, with standard deviations scaled by
+        `scale`.
+    check_points
+        Residuals of the points that took no part.
+    check_point_position_m, check_point_covariance_m2
+        (g, 3), (g, 3, 3) of them, computing frame, scaled by `scale`; NaN where unknown.
+    """
+
+    block: Block
+    settings: AdjustmentSettings
+    stated: BundleProblem
+    rejected: _Bools
+    problem: BundleProblem
+    adjusted: AdjustedBundle
+    overall: GlobalTest
+    parameters: tuple[ParameterTest, ...]
+    common_correlations: Correlations
+    single: Mapping[str, LocalTest]
+    snooping: Snooping
+    weights: EstimatedWeights | None
+    undetermined: tuple[Undetermined, ...]
+    orientations: Orientations
+    check_points: CheckPointResiduals
+    check_point_position_m: _Floats
+    check_point_covariance_m2: _Floats
+
+    @property
+    def scale(self) -> float:
+        """sigma0, by which standard deviations are scaled; 1 without redundancy."""
+        return scale(self.adjusted)
+
+    @cached_property
+    def pose_covariance(self) -> _Floats:
+        """(n, 6, 6) of rotation vector (ground frame) and projection centre, scaled."""
+        image = np.arange(len(self.adjusted.position_m))
+        return self.scale**2 * self.adjusted.inverse.blocks(image, image)
+
+    @property
+    def control_points(self) -> GroundPoints | None:
+        """The ground points that are control in the last adjustment."""
+        surveyed = self.block.ground_points
+        if surveyed is None:
+            return None
+        used = {self.block.tie_points.point_id[k] for k in self.problem.control.point}
+        return _some(surveyed, np.array([point in used for point in surveyed.point], dtype=bool))
+
+
+def scale(adjusted: AdjustedBundle) -> float:
+    """sigma0, or 1 without redundancy."""
+    return adjusted.sigma0 if adjusted.dof > 0 else 1.0
+
+
+def adjust_block(
+    block: Block, settings: AdjustmentSettings | None = None, *, progress: Progress | None = None
+) -> Adjustment:
+    """Adjust a block.
+
+    Parameters
+    ----------
+    block
+        From `read_block` or `posstats.synthetic.simulate`.
+    settings
+        Default: control by its roles, drift of the block, no self-calibration, robust.
+    progress
+        Called as progress(step, share done 0..1).
+
+    Raises
+    ------
+    PosstatsError
+        If control points cannot be chosen, the block is not determined, or measurements
+        contradict each other because of a mistake that can be named.
+    ConvergenceError
+        If the adjustment does not settle.
+    """
+    settings = settings or AdjustmentSettings()
+    report = progress or _no_progress
+    block, control = _with_roles(block, settings.control)
+    parameters = additional_parameters(block, settings)
+    tied = replace(block, tie_points=block.tie_points.subset(_takes_part(block)))
+    report("intersecting points", 0.0)
+    stated = bundle_problem(tied, parameters, control=control)
+    stated = replace(stated, bauer_radius_mm=settings.bauer_radius_mm)
+    ids = block.orientations.image
+    try:
+        rejected = _screened(stated, settings, report)
+        report("adjustment", 0.3)
+        problem = _without(stated, rejected)
+        adjusted = adjust(problem)
+        _refuse_mistakes(tied, stated, control, adjusted.sigma0)
+        problem = _with_released_priors(problem, adjusted)
+        weights = _first_weights(problem) if settings.estimate_weights else None
+        report("data snooping", 0.4)
+        snooping = snoop(weights.problem if weights else problem)
+        problem, adjusted = snooping.problem, snooping.result
+        if settings.estimate_weights:
+            report("estimating weights", 0.7)
+            weights = _combined(weights, estimate_weights(problem))
+            problem, adjusted = weights.problem, weights.result
+    except UndeterminedError as error:
+        raise PosstatsError(singular_message(error, stated, ids)) from error
+    except (ConvergenceError, GeometryError) as error:
+        mistake = likely_mistake(tied, parameters, control, np.inf)
+        if mistake is None:
+            raise
+        raise PosstatsError(f"the measurements contradict each other: {mistake}") from error
+    report("check points", 0.8)
+    return _result(block, settings, stated, rejected, problem, adjusted, snooping, weights)
+
+
+def _no_progress(_step: str, _done: float) -> None:
+    pass
+
+
+def _with_roles(block: Block, choice: ControlChoice) -> tuple[Block, _Bools]:
+    """The block with control and check points as chosen, and (g,) which are control."""
+    control = chosen_control(block, choice)
+    surveyed = block.ground_points
+    if surveyed is None:
+        return block, control
+    is_check = surveyed.is_check if choice == "roles" else ~control
+    return replace(block, ground_points=replace(surveyed, is_check=is_check)), control
+
+
+def _takes_part(block: Block) -> _Bools:
+    """(m,) rays that are not to check points."""
+    return ~block.check_points[block.tie_points.point]
+
+
+def _some(surveyed: GroundPoints, keep: _Bools) -> GroundPoints:
+    return GroundPoints(
+        surveyed.point[keep],
+        surveyed.position_m[keep],
+        surveyed.is_check[keep],
+        surveyed.sigma_xy_m[keep],
+        surveyed.sigma_z_m[keep],
+    )
+
+
+def _screened(stated: BundleProblem, settings: AdjustmentSettings, report: Progress) -> _Bools:
+    """(m,) rejected rays."""
+    if not settings.robust:
+        return np.zeros(len(stated.point), dtype=bool)
+    report("robust adjustment", 0.05)
+    return _contradicting(stated, lambda k, n: report("robust adjustment", 0.05 + 0.25 * k / n))
+
+
+def _contradicting(stated: BundleProblem, advance: Callable[[int, int], object]) -> _Bools:
+    """(m,) rays that contradict other rays, whatever control and POS say.
+
+    Control is left out and POS weak, so that a wrong control point or exposure does not turn
+    good rays into bad ones. Images of wrong axes are left to data snooping, which names them.
+    """
+    wrong = np.isin(stated.image, images_with_wrong_axes(stated))
+    pos = stated.pos
+    weak = replace(
+        pos,
+        sigma_antenna_m=_WEAK_POS * pos.sigma_antenna_m,
+        sigma_angles_rad=_WEAK_POS * pos.sigma_angles_rad,
+    )
+    relaxed = replace(_without(stated, wrong), pos=weak)
+    if _pos_holds(stated):
+        relaxed = _without_control(relaxed)
+    result = adjust(relaxed, robust=True, progress=advance)
+    image = result.groups["image"]
+    sigma_px = stated.sigma_px * np.sqrt(image.square_sum / max(image.redundancy, 1.0))
+    far: _Bools = np.abs(result.residual_px).max(axis=1) > _FAR * sigma_px
+    return far & result.rejected & ~wrong & np.isfinite(result.ground_m[stated.point, 0])
+
+
+def _pos_holds(problem: BundleProblem) -> bool:
+    """Whether every image has POS positions and angles with a weight."""
+    return bool((problem.pos.weight > 0.0).all())
+
+
+def _without(problem: BundleProblem, rays: _Bools) -> BundleProblem:
+    """The problem without weight of rays (m,)."""
+    return replace(problem, sigma_px=np.where(rays, np.inf, problem.sigma_px))
+
+
+def _without_control(problem: BundleProblem) -> BundleProblem:
+    control = problem.control
+    return replace(
+        problem,
+        control=Control(control.point[:0], control.position_m[:0], control.covariance_m2[:0]),
+    )
+
+
+def _with_released_priors(problem: BundleProblem, adjusted: AdjustedBundle) -> BundleProblem:
+    """The problem without the priors that its own measurements contradict.
+
+    A prior is an observation of 0 like others, and is judged like them: by its residual over the
+    standard deviation of that. It goes only where the measurements determine the parameter.
+    """
+    tests = parameter_tests(problem, adjusted)
+    stated = np.diagonal(adjusted.common_covariance)
+    parameters = tuple(
+        replace(each, sigma=None)
+        if each.sigma is not None
+        and test.determined
+        and test.value**2 > _PRIOR_BLUNDER**2 * (each.sigma**2 - variance)
+        else each
+        for each, test, variance in zip(problem.parameters, tests, stated, strict=True)
+    )
+    return replace(problem, parameters=parameters)
+
+
+def _first_weights(problem: BundleProblem) -> EstimatedWeights | None:
+    """Weights for data snooping: without control, whose blunders would hide in its variance."""
+    if not _pos_holds(problem):
+        return None
+    found = estimate_weights(_without_control(problem))
+    return replace(found, problem=replace(found.problem, control=problem.control))
+
+
+def _combined(first: EstimatedWeights | None, last: EstimatedWeights) -> EstimatedWeights:
+    """The last estimate with factors against the stated variances."""
+    if first is None:
+        return last
+    factor = {name: first.factor[name] * last.factor[name] for name in last.factor}
+    return replace(last, factor=factor)
+
+
+def _refuse_mistakes(tied: Block, stated: BundleProblem, control: _Bools, sigma0: float) -> None:
+    if not sigma0 >= GROSS:
+        return
+    mistake = likely_mistake(tied, stated.parameters, control, sigma0)
+    if mistake is not None:
+        raise PosstatsError(f"the measurements contradict each other: {mistake}")
+
+
+def _result(
+    block: Block,
+    settings: AdjustmentSettings,
+    stated: BundleProblem,
+    rejected: _Bools,
+    problem: BundleProblem,
+    adjusted: AdjustedBundle,
+    snooping: Snooping,
+    weights: EstimatedWeights | None,
+) -> Adjustment:
+    tests = parameter_tests(problem, adjusted)
+    orientations = _orientations(block, adjusted)
+    residuals, position, covariance = _check_points(block, problem, adjusted, orientations)
+    return Adjustment(
+        block=block,
+        settings=settings,
+        stated=stated,
+        rejected=rejected,
+        problem=problem,
+        adjusted=adjusted,
+        overall=global_test(adjusted),
+        parameters=tests,
+        common_correlations=correlations(adjusted),
+        single=local_tests(problem, adjusted),
+        snooping=snooping,
+        weights=weights,
+        undetermined=undetermined(problem, adjusted, tests, block.orientations.image),
+        orientations=orientations,
+        check_points=residuals,
+        check_point_position_m=position,
+        check_point_covariance_m2=covariance,
+    )
+
+
+def _orientations(block: Block, adjusted: AdjustedBundle) -> Orientations:
+    variance = np.diagonal(adjusted.orientation_covariance, axis1=1, axis2=2)
+    sigma = scale(adjusted) * np.sqrt(variance)
+    return replace(
+        block.orientations,
+        position_m=adjusted.position_m,
+        angles_rad=adjusted.angles_rad,
+        sigma_position_m=sigma[:, 3:],
+        sigma_angles_rad=sigma[:, :3],
+    )
+
+
+def _check_points(
+    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, orientations: Orientations
+) -> tuple[CheckPointResiduals, _Floats, _Floats]:
+    """Residuals, positions and covariances of the check points."""
+    given, points = surveyed_check_points(block)
+    computed, covariance = intersect_apart(block, problem, adjusted, orientations, points)
+    covariance *= scale(adjusted) ** 2
+    residuals = differences(block, ORIENTATION, given, computed, covariance)
+    return residuals, computed.position_m, covariance
