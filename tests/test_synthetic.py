@@ -363,6 +363,37 @@ def test_strip_constants_and_gnss_shifts_stay_through_a_strip():
     assert rate.std() == pytest.approx(0.01, rel=4 / np.sqrt(360))
 
 
+def test_angle_drifts_start_anew_with_every_strip():
+    errors = {"phi": {"strip_drift_rad_per_s": 1e-5}}
+    block = simulate(scenario_with(errors=errors, flight={"n_strips": 60, "images_per_strip": 3}))
+    phi = angle_errors(block)[:, 1].reshape(60, 3)
+    time = block.orientations.time_s.reshape(60, 3)
+    np.testing.assert_allclose(phi[:, 0], 0.0, atol=2e-15)
+    rate = phi[:, 1] / (time[:, 1] - time[:, 0])
+    np.testing.assert_allclose(phi[:, 2], rate * (time[:, 2] - time[:, 0]), atol=1e-13)
+    assert rate.std() == pytest.approx(1e-5, rel=4 / np.sqrt(120))
+
+
+def test_drifts_of_angles_leave_the_other_errors_as_they_were():
+    errors = {"phi": {"strip_rad": 1e-3, "noise_rad": 1e-4}, "position": {"noise_m": 0.1}}
+    plain = simulate(scenario_with(errors=errors))
+    errors["phi"] = errors["phi"] | {"strip_drift_rad_per_s": 1e-5}
+    drifting = simulate(scenario_with(errors=errors))
+    first = [0, len(plain.orientations) // 2]
+    np.testing.assert_array_equal(
+        drifting.orientations.angles_rad[first], plain.orientations.angles_rad[first]
+    )
+    np.testing.assert_array_equal(drifting.orientations.position_m, plain.orientations.position_m)
+
+
+def test_the_lever_arm_turns_with_the_image():
+    arm = np.array([0.3, -0.2, 1.5])
+    block = simulate(scenario_with(errors={"position": {"lever_arm_m": arm.tolist()}}))
+    offset = block.orientations.position_m - block.adjusted.position_m
+    in_image = np.einsum("nij,ni->nj", block.adjusted.ground_from_image, offset)
+    np.testing.assert_allclose(in_image, np.tile(arm, (len(offset), 1)), atol=1e-9)
+
+
 def test_blunders_have_their_share_and_length_and_spare_the_check_points():
     settings = {"tie_points": {"per_model": 1000}, "check_points": {"n": 9}}
     errors = {"blunder_share": 0.1, "blunder_px": 30}

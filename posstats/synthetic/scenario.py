@@ -58,6 +58,9 @@ _MaybePair = Annotated[
     tuple[float, float] | None, Rule("a list of two numbers", several(number(), 2))
 ]
 _Pair = Annotated[tuple[float, float], Rule("a list of two numbers", several(number(), 2))]
+_Triple = Annotated[
+    tuple[float, float, float], Rule("a list of three numbers", several(number(), 3))
+]
 
 
 @dataclass(frozen=True)
@@ -207,26 +210,30 @@ class TiePointSpec(Table):
 class AngleError(Table):
     """``[errors.omega]`` ...: error = constant + drift (t - t of the first exposure) + noise.
 
-    `strip_rad` is the standard deviation of a random constant of each strip, `noise_rad` that
-    of the white noise.
+    `strip_rad` and `strip_drift_rad_per_s` are the standard deviations of a random constant and
+    of a random drift (from its first exposure) of each strip, `noise_rad` that of the white noise.
     """
 
     constant_rad: _ErrorAngle = 0.0
     drift_rad_per_s: _Number = 0.0
     strip_rad: _SmallAngle = 0.0
+    strip_drift_rad_per_s: _NotNegative = 0.0
     noise_rad: _SmallAngle = 0.0
 
 
 @dataclass(frozen=True)
 class PositionError(Table):
-    """``[errors.position]``: standard deviations, alike in the three axes.
+    """``[errors.position]``: standard deviations, alike in the three axes, and a lever arm.
 
     White noise, and a random shift and drift (from its first exposure) of each strip.
+    `lever_arm_m` (u, v, w along image x, y, z) is what the POS leaves of the way from the
+    projection centre to the antenna: X_pos = X + R (u, v, w).
     """
 
     noise_m: _NotNegative = 0.0
     strip_shift_m: _NotNegative = 0.0
     strip_drift_m_per_s: _NotNegative = 0.0
+    lever_arm_m: _Triple = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

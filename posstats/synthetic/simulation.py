@@ -105,29 +105,32 @@ def _true_orientations(scenario: Scenario, plan: FlightPlan, frame: GroundFrame)
 
 def _pos(scenario: Scenario, truth: Orientations, streams: Streams) -> Orientations:
     errors = scenario.errors
-    ground = _angle_errors(truth, (errors.omega, errors.phi, errors.kappa), streams["attitude"])
-    camera = _angle_errors(truth, (errors.pitch, errors.roll, errors.yaw), streams["attitude"])
+    ground = _angle_errors(truth, (errors.omega, errors.phi, errors.kappa), streams)
+    camera = _angle_errors(truth, (errors.pitch, errors.roll, errors.yaw), streams)
     angles = truth.angles_rad + ground
     if camera.any():
         turned = rotation_from_angles(angles, truth.system) @ rotation_from_vector(camera)
         angles = angles_from_rotation(turned, truth.system)
-    position = truth.position_m + _position_errors(scenario, truth, streams["position"])
+    antenna = truth.ground_from_image @ np.array(errors.position.lever_arm_m)
+    position = truth.position_m + antenna + _position_errors(scenario, truth, streams["position"])
     return replace(truth, position_m=position, angles_rad=wrapped(angles))
 
 
-def _angle_errors(
-    truth: Orientations, models: tuple[AngleError, ...], rng: np.random.Generator
-) -> _Floats:
-    """Errors (n, 3), rad: constant + drift (t - t first) + strip constant + white noise."""
+def _angle_errors(truth: Orientations, models: tuple[AngleError, ...], streams: Streams) -> _Floats:
+    """Errors (n, 3), rad: constant + drift (t - t first), the same of each strip, white noise."""
     strip = _strip_index(truth)
+    n_strips = len(truth.strips)
     since_s = truth.time_s - truth.time_s[0]
-    of_strip = rng.normal(size=(len(truth.strips), 3))[strip]
-    white = rng.normal(size=(len(truth), 3))
+    of_strip = streams["attitude"].normal(size=(n_strips, 3))[strip]
+    white = streams["attitude"].normal(size=(len(truth), 3))
+    drift = streams["attitude drift"].normal(size=(n_strips, 3))[strip]
+    drift *= _since_first_of_strip(truth)[:, None]
     return np.column_stack(
         [
             model.constant_rad
             + model.drift_rad_per_s * since_s
             + model.strip_rad * of_strip[:, i]
+            + model.strip_drift_rad_per_s * drift[:, i]
             + model.noise_rad * white[:, i]
             for i, model in enumerate(models)
         ]
@@ -137,15 +140,22 @@ def _angle_errors(
 def _position_errors(scenario: Scenario, truth: Orientations, rng: np.random.Generator) -> _Floats:
     """Errors (n, 3), m: shift and drift of each strip, and white noise."""
     model = scenario.errors.position
-    strip = _strip_index(truth)
-    first_s = np.array([truth.time_s[strip == s].min() for s in range(len(truth.strips))])
-    shift = rng.normal(size=(len(first_s), 3))[strip]
-    drift = rng.normal(size=(len(first_s), 3))[strip] * (truth.time_s - first_s[strip])[:, None]
+    strip, n_strips = _strip_index(truth), len(truth.strips)
+    shift = rng.normal(size=(n_strips, 3))[strip]
+    drift = rng.normal(size=(n_strips, 3))[strip] * _since_first_of_strip(truth)[:, None]
     white = rng.normal(size=(len(truth), 3))
     total: _Floats = (
         model.strip_shift_m * shift + model.strip_drift_m_per_s * drift + model.noise_m * white
     )
     return total
+
+
+def _since_first_of_strip(truth: Orientations) -> _Floats:
+    """(n,) seconds since the first exposure of the image's strip."""
+    strip = _strip_index(truth)
+    first_s = np.array([truth.time_s[strip == s].min() for s in range(len(truth.strips))])
+    since_s: _Floats = truth.time_s - first_s[strip]
+    return since_s
 
 
 def _strip_index(truth: Orientations) -> _Ints:

@@ -21,6 +21,7 @@ _PURPOSES = (
     "survey",
     "position",
     "attitude",
+    "attitude drift",
 )
 
 
