@@ -9,17 +9,20 @@ drifts of the IMU.
 
 import argparse
 import multiprocessing
+import pickle
 import resource
 import statistics
+import tempfile
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from posstats.bundle import adjust
 from posstats.bundle_block import bundle_problem
-from posstats.bundle_parameters import IMU_DRIFTS, IMU_SHIFTS, drift_parameters
+from posstats.bundle_parameters import BLOCK, IMU_DRIFTS, IMU_SHIFTS, drift_parameters
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
 from posstats.synthetic import load_scenario, simulate
 
@@ -164,21 +167,44 @@ def peak_gib() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024**2
 
 
-def grow(n_strips: int) -> None:
-    """Adjust area 1 with other numbers of strips of 60 images, drifts per block and per strip."""
+def write_problems(n_strips: int, folder: Path) -> None:
+    """Area 1 with other numbers of strips of 60 images, drifts of the block and of each strip."""
     scenario = load_scenario("area1")
     flight = replace(scenario.flight, n_strips=n_strips)
     block = simulate(replace(scenario, flight=flight), seed=SEED)
-    simulated = peak_gib()
-    for scopes in (("block",), block.orientations.strips):
+    for scopes in ((BLOCK,), block.orientations.strips):
         drifts = drift_parameters((*IMU_SHIFTS, *IMU_DRIFTS), scopes)
-        problem = bundle_problem(block, drifts)
-        adjusted(problem)
-        result, seconds = adjusted(problem)
-        print(f"{len(problem.position_m)} images, {len(problem.point)} rays, {len(drifts)} drift"
-              f" parameters: {seconds:.2f} s, {result.n_iterations} iterations,"
-              f" sigma0 {result.sigma0:.3f}, peak {peak_gib():.2f} GiB"
-              f" (simulation alone {simulated:.2f} GiB)")  # fmt: skip
+        with (folder / f"{len(drifts)}.pickle").open("wb") as file:
+            pickle.dump(bundle_problem(block, drifts), file)
+
+
+def adjust_written(path: Path) -> None:
+    with path.open("rb") as file:
+        problem = pickle.load(file)  # noqa: S301 - written by this script
+    before = peak_gib()
+    adjusted(problem)
+    result, seconds = adjusted(problem)
+    print(
+        f"{len(problem.position_m)} images, {len(problem.point)} rays, {len(problem.parameters)}"
+        f" drift parameters: {seconds:.2f} s, {result.n_iterations} iterations, sigma0"
+        f" {result.sigma0:.3f}, peak memory {peak_gib():.2f} GiB ({before:.2f} GiB before)"
+    )
+
+
+def grow() -> None:
+    """Simulate and adjust in processes of their own: their peak memory is their own."""
+    context = multiprocessing.get_context("spawn")
+    for n_strips in (5, 15, 50):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            steps = [(write_problems, (n_strips, folder))]
+            steps += [
+                (adjust_written, (folder / f"{6 * n_scopes}.pickle",)) for n_scopes in (1, n_strips)
+            ]
+            for step, arguments in steps:
+                process = context.Process(target=step, args=arguments)
+                process.start()
+                process.join()
 
 
 def main() -> None:
@@ -186,13 +212,10 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--growth", action="store_true")
     arguments = parser.parse_args()
-    if not arguments.growth:
+    if arguments.growth:
+        grow()
+    else:
         compare(arguments.runs)
-        return
-    for n_strips in (5, 15, 50):  # a process each: its peak memory is its own
-        grown = multiprocessing.get_context("spawn").Process(target=grow, args=(n_strips,))
-        grown.start()
-        grown.join()
 
 
 if __name__ == "__main__":

@@ -11,6 +11,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = sorted((ROOT / "posstats").rglob("*.py"))
 KERNELS = (
+    "block_tridiagonal",
+    "bundle_groups",
+    "bundle_normals",
+    "bundle_precision",
+    "bundle_rays",
     "collinearity",
     "coplanarity",
     "coplanarity_normals",
