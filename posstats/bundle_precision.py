@@ -1,7 +1,7 @@
 """Covariances of ground points and redundancy numbers after a bundle adjustment; compiled.
 
 With C the covariance of the other unknowns of a point's rays, and K, N and A, B of
-`bundle_normals`, U = N^-1 K gives
+`bundle_point`, U = N^-1 K gives
 
     cov X = N^-1 + U C U',       cov (A dx + B dX) = h C h' + B N^-1 B',    h = A - B U,
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.bundle_groups import PointGroups
-from posstats.bundle_normals import (
+from posstats.bundle_point import (
     Ground,
     Measured,
     Network,

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from posstats.block_tridiagonal import ArrowMatrix, breadth_first_levels, factorised
+from posstats.block_tridiagonal import ArrowMatrix, factorised
 from posstats.errors import UndeterminedError
+from posstats.image_levels import breadth_first_levels
 
 
 def arrow(pairs, n_images, n_common, seed, b=6):

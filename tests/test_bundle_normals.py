@@ -6,15 +6,9 @@ import numpy as np
 from strip_scene import CAMERA, measurements, scene
 
 from posstats.bundle_groups import grouped
-from posstats.bundle_normals import (
-    Ground,
-    Measured,
-    Network,
-    Reduced,
-    accumulate,
-    move_points,
-    ray_residuals,
-)
+from posstats.bundle_normals import Reduced, accumulate
+from posstats.bundle_point import Ground, Measured, Network
+from posstats.bundle_points import move_points, ray_residuals
 from posstats.bundle_precision import Cofactors, PointPrecision, point_precision
 from posstats.bundle_rays import Cameras, Images, project_rays
 
