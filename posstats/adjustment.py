@@ -23,6 +23,7 @@ from posstats.bundle_check_points import intersect_apart
 from posstats.bundle_diagnosis import GROSS, likely_mistake
 from posstats.bundle_observability import Undetermined, singular_message, undetermined
 from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
+from posstats.bundle_selection import Dropped, select_parameters
 from posstats.bundle_snooping import Snooping, snoop
 from posstats.bundle_tests import (
     Correlations,
@@ -76,6 +77,8 @@ class Adjustment:
         Tests of the whole, of the additional parameters, and of the observations by group.
     snooping
         What data snooping found; its indices are those of `stated`.
+    dropped
+        Parameters that were dropped, in order.
     weights
         Estimated ones, or None.
     undetermined
@@ -100,6 +103,7 @@ class Adjustment:
     common_correlations: Correlations
     single: Mapping[str, LocalTest]
     snooping: Snooping
+    dropped: tuple[Dropped, ...]
     weights: EstimatedWeights | None
     undetermined: tuple[Undetermined, ...]
     orientations: Orientations
@@ -175,6 +179,11 @@ def adjust_block(
         report("data snooping", 0.4)
         snooping = snoop(weights.problem if weights else problem)
         problem, adjusted = snooping.problem, snooping.result
+        dropped: tuple[Dropped, ...] = ()
+        if settings.drop_insignificant:
+            report("dropping parameters", 0.6)
+            selection = select_parameters(problem)
+            problem, adjusted, dropped = selection.problem, selection.result, selection.dropped
         if settings.estimate_weights:
             report("estimating weights", 0.7)
             weights = _combined(weights, estimate_weights(problem))
@@ -187,7 +196,7 @@ def adjust_block(
             raise
         raise PosstatsError(f"the measurements contradict each other: {mistake}") from error
     report("check points", 0.8)
-    return _result(block, settings, stated, rejected, problem, adjusted, snooping, weights)
+    return _result(block, settings, stated, rejected, problem, adjusted, snooping, dropped, weights)
 
 
 def _no_progress(_step: str, _done: float) -> None:
@@ -246,8 +255,10 @@ def _contradicting(stated: BundleProblem, advance: Callable[[int, int], object])
     result = adjust(relaxed, robust=True, progress=advance)
     image = result.groups["image"]
     sigma_px = stated.sigma_px * np.sqrt(image.square_sum / max(image.redundancy, 1.0))
-    far: _Bools = np.abs(result.residual_px).max(axis=1) > _FAR * sigma_px
-    return far & result.rejected & ~wrong & np.isfinite(result.ground_m[stated.point, 0])
+    far = np.abs(result.residual_px).max(axis=1) > _FAR * sigma_px
+    known = np.isfinite(result.ground_m[stated.point, 0])
+    contradicting: _Bools = result.rejected & far & known & ~wrong
+    return contradicting
 
 
 def _pos_holds(problem: BundleProblem) -> bool:
@@ -319,6 +330,7 @@ def _result(
     problem: BundleProblem,
     adjusted: AdjustedBundle,
     snooping: Snooping,
+    dropped: tuple[Dropped, ...],
     weights: EstimatedWeights | None,
 ) -> Adjustment:
     tests = parameter_tests(problem, adjusted)
@@ -336,6 +348,7 @@ def _result(
         common_correlations=correlations(adjusted),
         single=local_tests(problem, adjusted),
         snooping=snooping,
+        dropped=dropped,
         weights=weights,
         undetermined=undetermined(problem, adjusted, tests, block.orientations.image),
         orientations=orientations,

@@ -65,6 +65,8 @@ class AdjustmentSettings:
         Image deformation: none, three parameters after Bauer, or five after Brown.
     estimate_weights
         Estimate the variances of the groups of observations.
+    drop_insignificant
+        Drop free parameters, and the boresight, where they are not significant, one by one.
     robust
         Reject blunders among the rays before data snooping.
     priors
@@ -77,6 +79,7 @@ class AdjustmentSettings:
     drift: DriftScope = "block"
     self_calibration: SelfCalibration = "none"
     estimate_weights: bool = False
+    drop_insignificant: bool = False
     robust: bool = True
     priors: DriftPriors = DriftPriors()
     bauer_radius_mm: float = 100.0

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from posstats.accuracy import CheckPointResiduals, check_point_accuracy
 from posstats.analysis import Analysis, FrameAnalysis
+from posstats.block import Block
 from posstats.drift import DriftFit
 from posstats.footprints import footprints
 from posstats.parallax import strip_statistics
@@ -47,9 +48,24 @@ _GLS_KEYS = (
 )
 
 
-def image_rows(analysis: Analysis) -> list[Row]:
+def block_row(block: Block) -> Row:
+    """What a block is, and what it was read from."""
+    n_checks = 0 if block.ground_points is None else int(block.ground_points.is_check.sum())
+    return {
+        "name": block.name,
+        "n_images": len(block.orientations),
+        "n_strips": len(block.orientations.strips),
+        "n_tie_points": int((~block.check_points).sum()),
+        "n_check_points": n_checks,
+        "simulated": block.simulated,
+        "crs": block.frame.crs,
+        "angles": block.orientations.system,
+        "inputs": [{"file": name, "sha256": digest} for name, digest in block.inputs],
+    }
+
+
+def image_rows(block: Block) -> list[Row]:
     """Every image with its place in the plan."""
-    block = analysis.block
     pos = block.orientations
     position = block.frame.to_crs(pos.position_m)
     return [

@@ -20,6 +20,7 @@ from posstats.result_rows import (
     accuracy_row,
     angle_error_rows,
     angle_error_summary_rows,
+    block_row,
     corrected_parallax_rows,
     error_source_rows,
     frame_rows,
@@ -45,19 +46,18 @@ def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]
     created
         ISO 8601 time stamp to put in; no clock is read here.
     """
-    values: dict[str, Any] = _plain(
+    values: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
             "posstats_version": __version__,
             "created": created,
-            "versions": {"python": platform.python_version()}
-            | {name: version(name) for name in _PACKAGES},
+            "versions": versions(),
             "block": _block(analysis),
             "settings": _settings(analysis),
             "units": {"mm": bool(np.isfinite(analysis.models.pixel_size_mm).all())},
             "verdict": _verdict(analysis),
             "expected_noise_px": _expected_noise_px(analysis),
-            "images": image_rows(analysis),
+            "images": image_rows(analysis.block),
             "parallax": parallax_rows(analysis),
             "models": model_rows(analysis),
             "error_sources": error_source_rows(analysis),
@@ -98,14 +98,14 @@ def to_json(values: dict[str, Any]) -> str:
     return json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Numbers, text, lists and dictionaries only; NaN and infinity become None."""
     if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items()}
+        return {key: plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [plain(each) for each in value]
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not np.isfinite(value):
@@ -113,21 +113,13 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def versions() -> dict[str, str]:
+    """Python and the main libraries."""
+    return {"python": platform.python_version()} | {name: version(name) for name in _PACKAGES}
+
+
 def _block(analysis: Analysis) -> Row:
-    block = analysis.block
-    n_checks = 0 if block.ground_points is None else int(block.ground_points.is_check.sum())
-    return {
-        "name": block.name,
-        "n_images": len(block.orientations),
-        "n_strips": len(block.orientations.strips),
-        "n_models": len(analysis.models),
-        "n_tie_points": int((~block.check_points).sum()),
-        "n_check_points": n_checks,
-        "simulated": block.simulated,
-        "crs": block.frame.crs,
-        "angles": block.orientations.system,
-        "inputs": [{"file": name, "sha256": digest} for name, digest in block.inputs],
-    }
+    return block_row(analysis.block) | {"n_models": len(analysis.models)}
 
 
 def _settings(analysis: Analysis) -> Row:

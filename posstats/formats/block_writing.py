@@ -1,7 +1,7 @@
 """Block -> files: corrected orientations beside the input, and whole block folders."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,17 +13,23 @@ from numpy.typing import NDArray
 from posstats.block import Block, GroundPoints, Orientations, OrientationTable
 from posstats.camera import Camera
 from posstats.errors import BlockFormatError, GeometryError
-from posstats.formats.block_toml import DISTORTION_COEFFICIENTS, RADIANS_PER_UNIT, settings_from
+from posstats.formats.block_toml import (
+    DISTORTION_COEFFICIENTS,
+    RADIANS_PER_UNIT,
+    BlockSettings,
+    settings_from,
+)
 from posstats.formats.convention import Convention
 from posstats.formats.toml_section import FILE
+from posstats.frames import GroundFrame
 from posstats.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
 
 _Floats = NDArray[np.float64]
 
 # Decimals that lose nothing: 0.1 um on the ground, 1e-8 px, 1e-14 rad.
-_POSITION_DECIMALS = 7
+POSITION_DECIMALS = 7
 _IMAGE_DECIMALS = 8
-_ANGLE_DECIMALS = {"deg": 12, "gon": 12, "rad": 14}
+ANGLE_DECIMALS = {"deg": 12, "gon": 12, "rad": 14}
 _TABLES = ("orientations", "tie_points", "ground_points", "adjusted")
 
 
@@ -54,7 +60,7 @@ def write_orientations(block: Block, angles_rad: _Floats, path: str | PathLike[s
     lacking = block.orientations.image[~np.isfinite(angles_rad).all(axis=1)]
     if len(lacking):
         raise GeometryError(f"no finite angles to write for image {lacking[0]}")
-    source, convention, decimals = _source(block)
+    source, convention, decimals = source_of(block, Convention.of_pos)
     table = source.table.copy()
     columns = list(source.angle_columns)
     position = table[["x", "y", "z"]].to_numpy(dtype=float)[source.row]
@@ -94,19 +100,29 @@ def write_block(block: Block, folder: str | PathLike[str]) -> None:
         _write({name: values[known] for name, values in columns.items()}, target / "adjusted.csv")
 
 
-def _source(block: Block) -> tuple[OrientationTable, Convention, int]:
-    """The table to write into, its convention and the decimals of its angles."""
+def source_of(
+    block: Block, convention_of: Callable[[BlockSettings, GroundFrame], Convention]
+) -> tuple[OrientationTable, Convention, int]:
+    """The table of orientations to write into, its convention and the decimals of its angles.
+
+    Parameters
+    ----------
+    block
+        As read, or of memory.
+    convention_of
+        `Convention.of_pos`, or `Convention.of_adjusted` for the cameras' own orientations.
+    """
     if block.source is None:
         table = pd.DataFrame(_orientation_columns(block), dtype=object)
         row = np.arange(len(block.orientations))
         source = OrientationTable(table, row, (ANGLE_NAMES[0], ANGLE_NAMES[1], ANGLE_NAMES[2]))
-        return source, _plain_convention(block), _ANGLE_DECIMALS["deg"]
+        return source, _plain_convention(block), ANGLE_DECIMALS["deg"]
     findings: list[str] = []
     settings = settings_from(block.settings, block.name, findings)
     if settings is None:
         raise BlockFormatError(findings)
-    decimals = _ANGLE_DECIMALS[settings.angle_unit]
-    return block.source, Convention.of_pos(settings, block.frame), decimals
+    decimals = ANGLE_DECIMALS[settings.angle_unit]
+    return block.source, convention_of(settings, block.frame), decimals
 
 
 def _plain_convention(block: Block) -> Convention:
@@ -119,13 +135,13 @@ def _write(columns: Mapping[str, Any], path: Path) -> None:
 
 
 def _pose_columns(block: Block, orientations: Orientations) -> dict[str, _Floats]:
-    position = np.round(block.frame.to_crs(orientations.position_m), _POSITION_DECIMALS)
+    position = np.round(block.frame.to_crs(orientations.position_m), POSITION_DECIMALS)
     angles = np.full_like(position, np.nan)
     known = np.isfinite(position).all(axis=1)
     angles[known] = _plain_convention(block).file_angles(
         position[known], orientations.ground_from_image[known]
     )
-    angles = np.round(angles, _ANGLE_DECIMALS["deg"])
+    angles = np.round(angles, ANGLE_DECIMALS["deg"])
     return {
         **dict(zip(("x", "y", "z"), position.T, strict=True)),
         **dict(zip(ANGLE_NAMES, angles.T, strict=True)),
@@ -169,7 +185,7 @@ def _tie_point_columns(block: Block) -> dict[str, Any]:
 
 
 def _ground_point_columns(block: Block, ground: GroundPoints) -> dict[str, Any]:
-    position = np.round(block.frame.to_crs(ground.position_m), _POSITION_DECIMALS)
+    position = np.round(block.frame.to_crs(ground.position_m), POSITION_DECIMALS)
     return {
         "point": ground.point,
         **dict(zip(("x", "y", "z"), position.T, strict=True)),

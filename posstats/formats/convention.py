@@ -143,6 +143,29 @@ class Convention:
         propagated: _Floats = np.sqrt((jacobian**2 @ sigmas[..., None] ** 2)[..., 0])
         return propagated
 
+    def file_angle_sigmas(
+        self, position_crs: _Floats, ground_from_image: _Floats, rotation_covariance: _Floats
+    ) -> _Floats:
+        """Standard deviations (n, 3) of the file's angles, in its unit.
+
+        Parameters
+        ----------
+        position_crs, ground_from_image
+            (n, 3), (n, 3, 3).
+        rotation_covariance
+            (n, 3, 3) of rotation vectors in the computing frame, R <- exp([w]x) R.
+        """
+        angles = self.file_angles(position_crs, ground_from_image) * self.unit_rad
+        if self.angles == "roll-pitch-heading":
+            vectors = navigation_rotation_vectors(angles, self.mounting_rad)
+        else:
+            vectors = _rotation_vectors(angles, self.angles)
+        turned = np.swapaxes(ground_from_image @ self._imu_from_camera, -1, -2)
+        by_rotation = np.linalg.solve(vectors, turned)
+        covariance = by_rotation @ rotation_covariance @ np.swapaxes(by_rotation, -1, -2)
+        sigmas: _Floats = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)) / self.unit_rad
+        return sigmas
+
     @property
     def _imu_from_camera(self) -> _Floats:
         """R_B, the boresight matrix."""
