@@ -72,8 +72,15 @@ def adjust(
     while not foretold < _SETTLED**2:
         before = length
         equations, length = iteration.step(system, equations)
-        foretold = length**2 / before if np.isfinite(before) else np.inf
+        foretold = _next_square(before, length)
     return _result(system, equations, iteration.count)
+
+
+def _next_square(before: float, last: float) -> float:
+    """Square of the next step, if steps shrink on as the last two (squares) did."""
+    if np.isinf(before):
+        return np.inf
+    return last if last >= before else last**2 / before
 
 
 def _linearised(system: BundleSystem, state: State) -> tuple[BundleSystem, Equations]:
@@ -137,14 +144,20 @@ def _scale(standardised: _Floats) -> float:
 def _huber(standardised: _Floats) -> _Floats:
     """(m,) Huber's weights of rays by the larger of their standardised residuals (m, 2)."""
     limit = _HUBER * _scale(standardised)
-    weight: _Floats = limit / np.maximum(np.abs(standardised).max(axis=1), limit)
+    weight: _Floats = limit / np.maximum(_largest(standardised), limit)
     return weight
 
 
 def _kept(standardised: _Floats) -> _Floats:
     """(m,) 1, or 0 of blunders."""
     limit = _REJECTION * _scale(standardised)
-    return np.where(np.abs(standardised).max(axis=1) <= limit, 1.0, 0.0)
+    return np.where(_largest(standardised) <= limit, 1.0, 0.0)
+
+
+def _largest(standardised: _Floats) -> _Floats:
+    """(m,) the larger of two residuals, infinite behind a camera (rays of points left out)."""
+    largest: _Floats = np.nan_to_num(np.abs(standardised).max(axis=1), nan=np.inf)
+    return largest
 
 
 def _result(system: BundleSystem, equations: Equations, n_iterations: int) -> AdjustedBundle:
