@@ -18,7 +18,7 @@ from posstats.bundle import adjust
 from posstats.bundle_axes import images_with_wrong_axes
 from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
 from posstats.bundle_tests import critical_value, local_tests
-from posstats.errors import UndeterminedError
+from posstats.errors import ConvergenceError, UndeterminedError
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
@@ -26,6 +26,7 @@ _Ints = NDArray[np.intp]
 Kind = Literal["image", "axes", "gnss", "imu", "control"]
 BLOCK_ALPHA = 0.05
 MOST_BLUNDERS = 100
+_GROSS = 10.0  # critical values: residuals that a robust start leaves out, the rest is tested
 _COMPARABLE = 0.5  # of the largest |w|: rays that may go together with that one
 
 
@@ -111,12 +112,12 @@ def snoop(
     Raises
     ------
     ConvergenceError, GeometryError, UndeterminedError
-        As `adjust`, of the problem without images of wrong axes.
+        As `adjust`, of the problem without images of wrong axes; where it does not converge, of
+        the robust solution.
     """
     out = [_Suspect("axes", i, float("nan")) for i in images_with_wrong_axes(problem)]
-    kept = _without(problem, out)
-    result = adjust(kept)
-    critical = critical_value(alpha / max(_n_tested(result), 1))
+    critical = critical_value(alpha / _n_components(_without(problem, out)))
+    out, kept, result = _first_adjustment(problem, out, critical)
     held: _Suspect | None = None
     while (suspects := _suspects(problem, kept, result, critical)) and len(out) < most:
         together = _together(problem, suspects)[: most - len(out)]
@@ -148,8 +149,30 @@ def _first_determined(
     return None
 
 
-def _n_tested(result: AdjustedBundle) -> int:
-    return sum(result.groups[name].n for name in ("image", "gnss", "imu", "control"))
+def _n_components(problem: BundleProblem) -> int:
+    """Number of observations with weight."""
+    rays = np.isfinite(problem.sigma_px).sum()
+    observed = (problem.pos.weight > 0.0).sum()
+    return int(2 * rays + observed + 3 * len(problem.control.point))
+
+
+def _first_adjustment(
+    problem: BundleProblem, out: list[_Suspect], critical: float
+) -> tuple[list[_Suspect], BundleProblem, AdjustedBundle]:
+    """Where rays are so wrong that nothing converges, those go that a robust solution rejects."""
+    kept = stated = _without(problem, out)
+    try:
+        return out, kept, adjust(kept)
+    except ConvergenceError:
+        result = adjust(kept, robust=True)
+    for _ in range(2):  # the second time, rays come back that least squares without them fit
+        w = result.residual_px / stated.sigma_px[:, None]
+        larger = w[np.arange(len(w)), np.abs(w).argmax(axis=1)]
+        gross = np.flatnonzero(result.rejected & ~(np.abs(larger) <= _GROSS * critical))
+        taken = out + [_Suspect("image", int(ray), float(larger[ray])) for ray in gross]
+        kept = _without(problem, taken)
+        result = adjust(kept)
+    return taken, kept, result
 
 
 def _without(problem: BundleProblem, out: list[_Suspect]) -> BundleProblem:

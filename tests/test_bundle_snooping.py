@@ -153,3 +153,18 @@ def test_snooping_stops_at_the_largest_number(problem):
     found = snoop(replace(problem, xy_px=xy), most=2)
     assert len(found.blunders) == 2
     assert not found.complete
+
+
+def test_mismatches_by_half_an_image_are_named():
+    problem = noisy_problem(seed=2, n_strips=3, n_images=8, n_points=400)
+    rng = np.random.default_rng(0)
+    often = np.flatnonzero(np.bincount(problem.point)[problem.point] >= 4)
+    rays = rng.choice(often, 20, replace=False)
+    xy = problem.xy_px.copy()
+    xy[rays] += 3000.0 * rng.standard_normal((20, 2))
+    found = snoop(replace(problem, xy_px=xy))
+    assert sorted(names(found)) == [("image", ray) for ray in sorted(rays)]
+    for blunder in found.blunders:
+        error = xy[blunder.index] - problem.xy_px[blunder.index]
+        np.testing.assert_allclose(blunder.size, error, atol=3.0)
+    assert found.complete
