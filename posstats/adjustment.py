@@ -13,7 +13,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
+from posstats.accuracy import (
+    CheckPointResiduals,
+    check_point_residuals,
+    differences,
+    surveyed_check_points,
+)
 from posstats.adjustment_settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.block import Block, GroundPoints, Orientations
 from posstats.bundle import adjust
@@ -22,6 +27,7 @@ from posstats.bundle_block import bundle_problem
 from posstats.bundle_check_points import intersect_apart
 from posstats.bundle_diagnosis import GROSS, likely_mistake
 from posstats.bundle_observability import Undetermined, singular_message, undetermined
+from posstats.bundle_priors import with_fitting_priors
 from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
 from posstats.bundle_selection import Dropped, select_parameters
 from posstats.bundle_snooping import Snooping, snoop
@@ -53,7 +59,6 @@ __all__ = [
 
 ORIENTATION = "bundle"
 _FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
-_PRIOR_BLUNDER = 4.0  # standard deviations beyond which measurements contradict a prior
 _WEAK_POS = 100.0  # times the stated sigmas, where rays are judged by themselves
 
 
@@ -86,8 +91,8 @@ class Adjustment:
     orientations
         Adjusted, projection centres, system of the block, with standard deviations scaled by
         `scale`.
-    check_points
-        Residuals of the points that took no part.
+    check_points, pos_check_points
+        Residuals of the points that took no part, from the adjusted orientations and from POS.
     check_point_position_m, check_point_covariance_m2
         (g, 3), (g, 3, 3) of them, computing frame, scaled by `scale`; NaN where unknown.
     """
@@ -108,6 +113,7 @@ class Adjustment:
     undetermined: tuple[Undetermined, ...]
     orientations: Orientations
     check_points: CheckPointResiduals
+    pos_check_points: CheckPointResiduals
     check_point_position_m: _Floats
     check_point_covariance_m2: _Floats
 
@@ -174,7 +180,7 @@ def adjust_block(
         problem = _without(stated, rejected)
         adjusted = adjust(problem)
         _refuse_mistakes(tied, stated, control, adjusted.sigma0)
-        problem = _with_released_priors(problem, adjusted)
+        problem = with_fitting_priors(problem, adjusted)
         weights = _first_weights(problem) if settings.estimate_weights else None
         report("data snooping", 0.4)
         snooping = snoop(weights.problem if weights else problem)
@@ -279,25 +285,6 @@ def _without_control(problem: BundleProblem) -> BundleProblem:
     )
 
 
-def _with_released_priors(problem: BundleProblem, adjusted: AdjustedBundle) -> BundleProblem:
-    """The problem without the priors that its own measurements contradict.
-
-    A prior is an observation of 0 like others, and is judged like them: by its residual over the
-    standard deviation of that. It goes only where the measurements determine the parameter.
-    """
-    tests = parameter_tests(problem, adjusted)
-    stated = np.diagonal(adjusted.common_covariance)
-    parameters = tuple(
-        replace(each, sigma=None)
-        if each.sigma is not None
-        and test.determined
-        and test.value**2 > _PRIOR_BLUNDER**2 * (each.sigma**2 - variance)
-        else each
-        for each, test, variance in zip(problem.parameters, tests, stated, strict=True)
-    )
-    return replace(problem, parameters=parameters)
-
-
 def _first_weights(problem: BundleProblem) -> EstimatedWeights | None:
     """Weights for data snooping: without control, whose blunders would hide in its variance."""
     if not _pos_holds(problem):
@@ -353,6 +340,7 @@ def _result(
         undetermined=undetermined(problem, adjusted, tests, block.orientations.image),
         orientations=orientations,
         check_points=residuals,
+        pos_check_points=check_point_residuals(block, block.orientations, "pos"),
         check_point_position_m=position,
         check_point_covariance_m2=covariance,
     )

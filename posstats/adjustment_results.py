@@ -66,10 +66,15 @@ def adjustment_results(adjustment: Adjustment, *, created: str | None = None) ->
             "n_rejected_rays": int(adjustment.rejected.sum()),
             "snooping_complete": adjustment.snooping.complete,
             "check_points": [
-                accuracy_row(adjustment.check_points, translation_removed=removed)
+                accuracy_row(residuals, translation_removed=removed)
+                for residuals in (adjustment.check_points, adjustment.pos_check_points)
                 for removed in (False, True)
             ],
-            "check_point_residuals": list(residual_rows(adjustment.check_points)),
+            "check_point_residuals": [
+                row
+                for residuals in (adjustment.check_points, adjustment.pos_check_points)
+                for row in residual_rows(residuals)
+            ],
             "control_points": list(_control_rows(adjustment)),
             "orientations": list(_orientation_rows(adjustment)),
             "points": _points(adjustment),
@@ -195,7 +200,7 @@ def _median(values: _Floats) -> float | None:
 def _parameter_rows(adjustment: Adjustment) -> Iterator[Row]:
     prior = {(each.name, each.scope): each.sigma for each in adjustment.stated.parameters}
     for test, last in zip(adjustment.parameters, adjustment.problem.parameters, strict=True):
-        stated = prior[test.name, test.scope]
+        stated = prior.get((test.name, test.scope))
         yield {
             "name": test.name,
             "scope": test.scope,

@@ -1,6 +1,6 @@
 """What an adjustment does not determine, why, and what would: in words."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from posstats.bundle_defects import defects
 from posstats.bundle_parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
@@ -15,7 +16,6 @@ from posstats.bundle_parameters import (
     IMU_DRIFTS,
     IMU_SHIFTS,
     LEVER_ARM,
-    CommonParameter,
 )
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
 from posstats.bundle_tests import LEAST_REDUNDANCY, ParameterTest
@@ -24,7 +24,6 @@ from posstats.errors import UndeterminedError
 _Floats = NDArray[np.float64]
 _Ids = NDArray[np.object_]
 
-SHOWN_IMAGES = 12
 FEW_IMAGES = 4  # below, a part of the block is named by its images, else by its strips
 
 
@@ -35,7 +34,8 @@ class Undetermined:
     Attributes
     ----------
     kind
-        ``parameter``, ``image`` or ``connection``.
+        ``parameter``: known from its prior, or its relation to others, alone; ``image``;
+        ``connection``.
     names, scope
         Names of the parameters, or ids of the images or strips; the parameters' scope.
     reason, remedy
@@ -168,41 +168,9 @@ def unconnected(
         )
 
 
-def singular_message(
-    error: UndeterminedError,
-    problem: BundleProblem,
-    image_id: _Ids,
-) -> str:
-    """What the singular normal equations leave open, why, and what would determine it."""
-    sentences = [*_datum_defect(problem)]
-    open_parameters: Iterable[CommonParameter] = (problem.parameters[k] for k in error.common)
-    for each in open_parameters:
-        reason, remedy = explanation(each.name)
-        sentences.append(
-            f"{each.name} of {each.scope} is not determined: {reason}; needed: {remedy}, or a"
-            " prior standard deviation"
-        )
-    if error.images and not sentences:
-        shown = ", ".join(str(each) for each in image_id[list(error.images)][:SHOWN_IMAGES])
-        more = f" and {len(error.images) - SHOWN_IMAGES} more"
-        more = more if len(error.images) > SHOWN_IMAGES else ""
-        sentences.append(
-            f"the orientation of image {shown}{more} is not determined: its points are too few, or"
-            " lie on a line or too close together; needed: more points, or weights of the POS"
-        )
+def singular_message(error: UndeterminedError, problem: BundleProblem, image_id: _Ids) -> str:
+    """What singular normal equations leave open, why, and what would determine it."""
+    sentences = [each.sentence for each in defects(problem, tuple(image_id), error)]
     apart = unconnected(problem, image_id)
-    sentences += [f"{', '.join(each.names)}: {each.reason}" for each in apart]
-    return "the block is not determined: " + ". ".join(sentences)
-
-
-def _datum_defect(problem: BundleProblem) -> Iterator[str]:
-    """A sentence if nothing holds position, rotation or scale of the block."""
-    n_positions = int(np.isfinite(problem.pos.sigma_antenna_m).all(axis=1).sum())
-    n_known = n_positions + len(problem.control.point)
-    has_angles = bool(np.isfinite(problem.pos.sigma_angles_rad).any())
-    if n_known < 3 and not (n_known >= 2 and has_angles):
-        yield (
-            "datum defect: no POS positions with a weight and fewer than three control points, so"
-            " nothing holds the position, rotation and scale of the block; needed: standard"
-            " deviations of the POS positions, or three control points that are not on a line"
-        )
+    sentences += [f"{', '.join(each.names)}: {each.reason}." for each in apart]
+    return " ".join(sentences)

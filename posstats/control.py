@@ -1,6 +1,7 @@
 """Which ground points are control: by their roles, by their place in the block, or by their ids."""
 
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -48,6 +49,26 @@ def chosen_control(block: Block, choice: ControlChoice) -> _Bools:
     elif choice in ("centre", "corners"):
         chosen[_nearest(block, surveyed, np.flatnonzero(measured), choice)] = True
     return chosen
+
+
+def read_ids(path: Path) -> tuple[str, ...]:
+    """Ids of a text file, one on a line; empty lines and what follows a # do not count.
+
+    Raises
+    ------
+    PosstatsError
+        If there is no id, or the file is no text.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise PosstatsError(
+            f"{path}: found no text in UTF-8, expected ids, one on a line"
+        ) from error
+    ids = tuple(filter(None, (line.partition("#")[0].strip() for line in lines)))
+    if not ids:
+        raise PosstatsError(f"{path}: found no id, expected ids of control points, one on a line")
+    return ids
 
 
 def _without_points(choice: ControlChoice) -> _Bools:

@@ -116,6 +116,83 @@ def analyse(
 
 
 @cli.command()
+@click.argument("block", type=FOLDER)
+@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@click.option(
+    "--control",
+    metavar="none|centre|corners|all|FILE",
+    help="Control points chosen among all ground points, or a file of ids, one on a line; the "
+    "others are check points.  [default: the roles of ground_points.csv]",
+)
+@click.option(
+    "--drift",
+    type=click.Choice(["none", "block", "strip"]),
+    default="block",
+    show_default=True,
+    help="Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or strips.",
+)
+@click.option(
+    "--self-calibration",
+    type=click.Choice(["none", "bauer", "brown"]),
+    default="none",
+    show_default=True,
+    help="Image deformation.",
+)
+@click.option(
+    "--estimate-weights", is_flag=True, help="Estimate the accuracy of images, GNSS, IMU, control."
+)
+@click.option(
+    "--drop-insignificant", is_flag=True, help="Drop free parameters that are not significant."
+)
+@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
+@click.option(
+    "--robust/--no-robust",
+    default=True,
+    show_default=True,
+    help="Take out contradicting image rays before data snooping.",
+)
+@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@_clear_errors
+def adjust(
+    block: Path,
+    out: Path | None,
+    control: str | None,
+    drift: Literal["none", "block", "strip"],
+    self_calibration: Literal["none", "bauer", "brown"],
+    estimate_weights: bool,
+    drop_insignificant: bool,
+    calibration: Path | None,
+    robust: bool,
+    no_pdf: bool,
+) -> None:
+    """Adjust the block folder BLOCK as a bundle with its POS, and write a report.
+
+    Writes adjustment.json, adjusted_orientations.csv, points.csv, adjustment.html and
+    adjustment.pdf. Files of the same names are replaced; if the adjustment fails, nothing is
+    written.
+
+    \b
+    Example:
+      posstats adjust flight7 --control corners --drift strip --out flight7/adjusted
+    """
+    from posstats.adjustment import AdjustmentSettings
+
+    from .adjust_command import adjust_folder, control_choice
+
+    settings = AdjustmentSettings(
+        control=control_choice(control),
+        drift=drift,
+        self_calibration=self_calibration,
+        estimate_weights=estimate_weights,
+        drop_insignificant=drop_insignificant,
+        robust=robust,
+    )
+    target = out or _default_out(block)
+    for line in adjust_folder(block, target, settings, calibration, pdf=not no_pdf):
+        click.echo(line)
+
+
+@cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."

@@ -1,7 +1,7 @@
 """Plan of the block: images, strips, models coloured by parallax, check-point vectors."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import matplotlib
@@ -68,27 +68,44 @@ def block_plan(results: Results) -> style.Drawing | None:
 
 def check_point_plan(results: Results) -> style.Drawing | None:
     """Differences at check points before and after the selected correction, shift removed."""
-    before = rows(results, "check_point_residuals", orientation="pos")
-    after = rows(results, "check_point_residuals", orientation="selected")
-    panels = [
-        (words, part)
-        for words, part in (("POS as delivered", before), ("after the selected correction", after))
-        if part
+    words = {"pos": "POS as delivered", "selected": "after the selected correction"}
+    return difference_plan(results, words, centred=True)
+
+
+def difference_plan(
+    results: Results, orientations: Mapping[str, str], *, centred: bool
+) -> style.Drawing | None:
+    """Differences at check points from several orientations, one panel each; None without.
+
+    Parameters
+    ----------
+    results
+        With images and the residuals of check points.
+    orientations
+        Titles of the panels by the names of the orientations.
+    centred
+        Whether the mean difference is taken off.
+    """
+    found = [
+        (words, rows(results, "check_point_residuals", orientation=name))
+        for name, words in orientations.items()
     ]
+    panels = [(words, part) for words, part in found if part]
     if not panels:
         return None
-    view = view_of(rows(results, "images") or before)
+    view = view_of(rows(results, "images") or panels[0][1])
     figure, axes = _panels(view, len(panels))
     for axis, (words, part) in zip(axes, panels, strict=True):
         _images_behind(axis, view, results)
         with_north = view.turned and axis is axes[0]
-        _centred_differences(axis, view, part, row=1 if with_north else 0)
+        _differences(axis, view, part, row=1 if with_north else 0, centred=centred)
         axis.set_title(words, loc="right" if view.turned else "left", pad=4 if view.turned else 20)
         view.dress(axis)
         if with_north:
             north_and_scale(axis, view)
+    mean = "removed" if centred else "kept"
     caption = (
-        "Differences at check points (computed minus given, mean difference removed). Solid blue: "
+        f"Differences at check points (computed minus given, mean difference {mean}). Solid blue: "
         "horizontal; dashed orange: vertical, drawn towards north"
         f"{' (right)' if view.turned else ''} where the computed point is too high. Each panel has "
         "its own scale arrow."
@@ -258,10 +275,12 @@ def _check_points(axis: Axes, view: PlanView, points: Sequence[Row]) -> bool:
     return True
 
 
-def _centred_differences(axis: Axes, view: PlanView, points: Sequence[Row], row: int) -> None:
-    """Horizontal and vertical differences as arrows, the mean of each removed."""
+def _differences(
+    axis: Axes, view: PlanView, points: Sequence[Row], row: int, *, centred: bool
+) -> None:
+    """Horizontal and vertical differences as arrows, the mean of each removed if `centred`."""
     place, difference = _columns(points, "x_m", "y_m"), _columns(points, "dx_m", "dy_m", "dz_m")
-    if np.isfinite(difference).all(axis=1).sum() > 1:
+    if centred and np.isfinite(difference).all(axis=1).sum() > 1:
         difference = difference - np.nanmean(difference, axis=0)
     axis.plot(*view.drawn(place), "^", color="white", mec=style.BLACK, mew=0.7, ms=4.0, zorder=4)
     scale = arrow_scale(np.linalg.norm(difference, axis=1), view)

@@ -1,0 +1,77 @@
+"""`posstats adjust`: from a block folder to its bundle block adjustment and the report on it."""
+
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
+from posstats.adjustment_results import adjustment_results, write_adjustment
+from posstats.block_io import read_block
+from posstats.calibration import apply_calibration, read_calibration
+from posstats.control import NAMED_CHOICES, read_ids
+from posstats.errors import PosstatsError
+from posstats.results import to_json
+
+from . import adjustment_document, adjustment_verdict
+from .output import staged_folder
+from .progress import progress_bar
+from .report import write_pages
+from .summary import WIDTH
+from .timestamp import now
+
+
+def control_choice(text: str | None) -> ControlChoice:
+    """The control that a user names: a choice, or a file of ids; None: the roles of the points.
+
+    Raises
+    ------
+    PosstatsError
+        If it is neither.
+    """
+    if text is None:
+        return "roles"
+    if text in NAMED_CHOICES:
+        return cast(ControlChoice, text)
+    path = Path(text)
+    if not path.is_file():
+        raise PosstatsError(
+            f"--control {text}: found neither a choice (none, centre, corners, all) nor a file"
+        )
+    return read_ids(path)
+
+
+def adjust_folder(
+    folder: Path, out: Path, settings: AdjustmentSettings, calibration: Path | None, *, pdf: bool
+) -> Iterator[str]:
+    """Adjust a block folder into `out`; yields the lines of the terminal summary."""
+    with staged_folder(out) as stage, progress_bar("reading the block") as progress:
+        block = read_block(folder)
+        if calibration is not None:
+            block = apply_calibration(block, read_calibration(calibration))
+        adjustment = adjust_block(
+            block, settings, progress=lambda step, done: progress(step, 0.8 * done)
+        )
+        values = adjustment_results(adjustment, created=now())
+        values["settings"]["calibration"] = None if calibration is None else calibration.name
+        (stage / "adjustment.json").write_text(to_json(values), encoding="utf-8")
+        write_adjustment(adjustment, stage)
+        progress("writing the report", 0.85)
+        missing = write_pages(adjustment_document.build(values), stage / "adjustment", pdf=pdf)
+    yield from _summary(values)
+    yield ""
+    if missing:
+        yield missing
+    yield f"report: {out / 'adjustment.html'}" + (
+        f", {out / 'adjustment.pdf'}" if pdf and not missing else ""
+    )
+
+
+def _summary(values: dict[str, Any]) -> Iterator[str]:
+    block = values["block"]
+    simulated = " (simulated)" if block["simulated"] else ""
+    yield f"{block['name']}{simulated}: {block['n_images']} images, {block['n_rays']} image rays"
+    yield ""
+    yield from textwrap.wrap(adjustment_verdict.paragraph(values), WIDTH)
+    for warning in values["warnings"]:
+        yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
