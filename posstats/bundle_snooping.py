@@ -25,7 +25,7 @@ _Ints = NDArray[np.intp]
 
 Kind = Literal["image", "axes", "gnss", "imu", "control"]
 BLOCK_ALPHA = 0.05
-MOST_BLUNDERS = 100
+MOST_BLUNDERS = 1000
 _GROSS = 10.0  # critical values: residuals that a robust start leaves out, the rest is tested
 _COMPARABLE = 0.5  # of the largest |w|: rays that may go together with that one
 

@@ -178,3 +178,18 @@ def test_parameters_without_effect_are_significant_in_a_twentieth_of_blocks_what
         problem = rescaled(noisy_problem(parameters, seed=seed), dict.fromkeys(GROUPS, 4.0))
         significant += sum(t.significant for t in parameter_tests(problem, adjust(problem)))
     assert 14 <= significant <= 46
+
+
+def test_a_blunder_of_the_detectable_size_is_found_with_the_stated_power():
+    # 150 blocks, 0.80 +- 0.033
+    first = noisy_problem()
+    detectable = local_tests(first, adjust(first))["gnss"].detectable[3, 0]
+    found = 0
+    for seed in range(150):
+        problem = noisy_problem(seed=seed)
+        antenna = problem.pos.antenna_m.copy()
+        antenna[3, 0] += detectable
+        problem = replace(problem, pos=replace(problem.pos, antenna_m=antenna))
+        w = local_tests(problem, adjust(problem))["gnss"].w[3, 0]
+        found += abs(w) > critical_value()
+    assert 0.68 < found / 150 < 0.92
