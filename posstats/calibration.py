@@ -1,0 +1,281 @@
+"""The usual alternative to a block that calibrates itself: boresight and lever arm of a flight.
+
+Both are estimated once, by the bundle adjustment of a calibration block, kept in a file with their
+covariance, and taken off the POS of other flights of the same camera. What the POS of those
+flights has besides (shifts and drifts of their own) stays.
+"""
+
+import json
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats import __version__
+from posstats.adjustment import Adjustment
+from posstats.block import Block, Orientations
+from posstats.bundle import adjust
+from posstats.bundle_observations import antenna_positions, imu_angles
+from posstats.bundle_parameters import BLOCK, BORESIGHT, LEVER_ARM, drift_parameters
+from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.correction import corrected
+from posstats.errors import BlockFormatError, PosstatsError
+from posstats.formats.checked_table import (
+    Rule,
+    Table,
+    number,
+    one_of,
+    read_table,
+    several,
+    text,
+    whole,
+)
+from posstats.formats.tables import sha256
+from posstats.rotation import rotation_from_angles, vector_from_rotation
+
+_Floats = NDArray[np.float64]
+
+LEVER_ARM_PRIOR_M = 1.0
+SCHEMA = "posstats-calibration/1"
+_HEAD = "# Boresight and lever arm of a POS, measured minus true: see docs/wucaps.md"
+_PITCH_ROLL_YAW = np.array([1, 0, 2])  # as omega, phi, kappa of Rx(omega) Ry(phi) Rz(kappa)
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Boresight, and lever arm, of a POS and a camera.
+
+    Attributes
+    ----------
+    boresight_rad
+        (3,) roll, pitch, yaw: R_IMU = R R_B, R_B = Rx(pitch) Ry(roll) Rz(yaw).
+    lever_arm_m
+        (3,) u, v, w along image x, y, z: X_A = X_S + R (u, v, w); None if it was not estimated.
+    covariance
+        (k, k) of the boresight, then the lever arm, rad and m, of the stated weights.
+    block, camera
+        Id of the calibration block, and of its camera.
+    n_images
+        Of that block.
+    posstats_version
+        Of the program that estimated it.
+    """
+
+    boresight_rad: _Floats
+    lever_arm_m: _Floats | None
+    covariance: _Floats
+    block: str
+    camera: str
+    n_images: int
+    posstats_version: str = __version__
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the k parameters."""
+        return BORESIGHT if self.lever_arm_m is None else (*BORESIGHT, *LEVER_ARM)
+
+
+def calibrate(adjustment: Adjustment, *, lever_arm: bool = False) -> Calibration:
+    """The calibration that an adjustment with unknown boresight gives.
+
+    Parameters
+    ----------
+    adjustment
+        Of the calibration block.
+    lever_arm
+        Adjust again, with the lever arm unknown: what the POS leaves of it, expected to be 0 with
+        a standard deviation of `LEVER_ARM_PRIOR_M`.
+
+    Raises
+    ------
+    PosstatsError
+        If the boresight was no unknown, or the block has several cameras.
+    """
+    problem, adjusted = adjustment.problem, adjustment.adjusted
+    if lever_arm:
+        arm = drift_parameters(LEVER_ARM, (BLOCK,), LEVER_ARM_PRIOR_M)
+        problem = replace(problem, parameters=(*problem.parameters, *arm))
+        adjusted = adjust(problem)
+    return calibration_of(adjustment.block, problem, adjusted)
+
+
+def calibration_of(block: Block, problem: BundleProblem, adjusted: AdjustedBundle) -> Calibration:
+    """`calibrate` of the parts of an adjustment."""
+    if len(block.cameras) > 1:
+        raise PosstatsError(
+            "a calibration belongs to one camera; the block has "
+            + ", ".join(camera.id for camera in block.cameras)
+        )
+    place = {(each.name, each.scope): at for at, each in enumerate(problem.parameters)}
+    boresight = [place.get((name, BLOCK), -1) for name in BORESIGHT]
+    if -1 in boresight:
+        raise PosstatsError("the boresight was not an unknown of the adjustment: choose a drift")
+    arm = [place[name, BLOCK] for name in LEVER_ARM if (name, BLOCK) in place]
+    used = [*boresight, *arm]
+    return Calibration(
+        boresight_rad=adjusted.common[boresight],
+        lever_arm_m=adjusted.common[arm] if arm else None,
+        covariance=adjusted.common_covariance[np.ix_(used, used)],
+        block=block.name,
+        camera=block.cameras[0].id,
+        n_images=len(block.orientations),
+    )
+
+
+def apply_calibration(block: Block, calibration: Calibration) -> Block:
+    """The block with the calibration taken off its POS.
+
+    The standard deviations of the POS grow by those of the calibration, which all images share:
+    as correlated errors they do not average out over the block.
+
+    Raises
+    ------
+    PosstatsError
+        If the block has another camera.
+    """
+    _require_camera(block, calibration)
+    pos = block.orientations
+    turn = rotation_from_angles(calibration.boresight_rad[_PITCH_ROLL_YAW], "omega-phi-kappa")
+    turned = corrected(pos, np.tile(vector_from_rotation(turn), (len(pos), 1)), "camera")
+    _, _, by_boresight = imu_angles(turned.ground_from_image, calibration.boresight_rad, pos.system)
+    variance = _variances(by_boresight, calibration.covariance[:3, :3])
+    turned = replace(turned, sigma_angles_rad=np.sqrt(pos.sigma_angles_rad**2 + variance))
+    return replace(block, orientations=_without_lever_arm(turned, calibration))
+
+
+def _without_lever_arm(pos: Orientations, calibration: Calibration) -> Orientations:
+    if calibration.lever_arm_m is None:
+        return pos
+    antenna_m, _, by_arm = antenna_positions(
+        pos.ground_from_image, pos.position_m, calibration.lever_arm_m
+    )
+    variance = _variances(by_arm, calibration.covariance[3:, 3:])
+    return replace(
+        pos,
+        position_m=2.0 * pos.position_m - antenna_m,
+        sigma_position_m=np.sqrt(pos.sigma_position_m**2 + variance),
+    )
+
+
+def _variances(derivatives: _Floats, covariance: _Floats) -> _Floats:
+    """(n, 3) from derivatives (n, 3, 3) by parameters of a covariance (3, 3)."""
+    variances: _Floats = np.einsum("nij,jk,nik->ni", derivatives, covariance, derivatives)
+    return variances
+
+
+def _require_camera(block: Block, calibration: Calibration) -> None:
+    strange = [each.id for each in block.cameras if each.id != calibration.camera]
+    if strange:
+        raise PosstatsError(
+            f"the calibration (block {calibration.block}) is of camera {calibration.camera!r};"
+            f" {block.name} has {', '.join(map(repr, strange))}"
+        )
+
+
+def calibrated(block: Block, path: Path) -> Block:
+    """The block with the calibration of a file taken off, the file among its inputs."""
+    taken_off = apply_calibration(block, read_calibration(path))
+    read = (path.name, sha256(path.read_bytes()))
+    return replace(taken_off, inputs=(*block.inputs, read))
+
+
+def read_calibration(path: Path) -> Calibration:
+    """Read a file of `write_calibration`.
+
+    Raises
+    ------
+    BlockFormatError
+        With every finding.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
+    except UnicodeDecodeError as error:
+        raise BlockFormatError([f"{path.name}: is not a text file in UTF-8"]) from error
+    except tomllib.TOMLDecodeError as error:
+        raise BlockFormatError([f"{path.name}: is not valid TOML: {error}"]) from error
+    return read_table(_CalibrationFile, content, path.name).calibration
+
+
+def write_calibration(calibration: Calibration, path: Path) -> None:
+    """Write a calibration as TOML: lengths in m, angles in rad, numbers to the last digit."""
+    arm = calibration.lever_arm_m
+    values: dict[str, object] = {
+        "schema": SCHEMA,
+        "posstats_version": calibration.posstats_version,
+        "block": calibration.block,
+        "camera": calibration.camera,
+        "n_images": calibration.n_images,
+        "boresight_rad": calibration.boresight_rad.tolist(),
+    }
+    if arm is not None:
+        values["lever_arm_m"] = arm.tolist()
+    values |= {
+        "parameters": list(calibration.names),
+        "covariance": calibration.covariance.tolist(),
+    }
+    # Strings and lists of JSON are those of TOML, but for DEL, which TOML wants escaped.
+    lines = [f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in values.items()]
+    path.write_text("\n".join([_HEAD, *lines, ""]).replace("\x7f", "\\u007f"), encoding="utf-8")
+
+
+def _matrix(value: Any) -> _Floats:
+    """A covariance matrix of three or six rows."""
+    rows = several(several(number()))(value)
+    if len(rows) not in (3, 6) or any(len(row) != len(rows) for row in rows):
+        raise ValueError
+    matrix = np.array(rows)
+    variances = np.diagonal(matrix)
+    if (variances <= 0.0).any() or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0.0):
+        raise ValueError
+    return matrix
+
+
+_Name = Annotated[str, Rule("a text", text)]
+_Three = Annotated[
+    tuple[float, float, float], Rule("a list of three numbers", several(number(), 3))
+]
+_MaybeThree = Annotated[
+    tuple[float, float, float] | None, Rule("a list of three numbers", several(number(), 3))
+]
+
+
+@dataclass(frozen=True)
+class _CalibrationFile(Table):
+    """What the file holds."""
+
+    schema: Annotated[str, one_of(SCHEMA)]
+    posstats_version: _Name
+    block: _Name
+    camera: _Name
+    n_images: Annotated[int, Rule("a whole number above 0", whole(1))]
+    boresight_rad: _Three
+    parameters: Annotated[tuple[str, ...], Rule("a list of names", several(text))]
+    covariance: Annotated[Any, Rule("a covariance matrix of 3 or 6 rows", _matrix)]
+    lever_arm_m: _MaybeThree = None
+
+    def conflicts(self) -> Iterable[str]:
+        """Sentences on values that contradict each other."""
+        names = self.calibration.names
+        if self.parameters != names:
+            yield f"parameters: found {', '.join(self.parameters)}, expected {', '.join(names)}"
+        if len(self.covariance) != len(names):
+            yield f"covariance: found {len(self.covariance)} rows, expected {len(names)}"
+
+    @property
+    def calibration(self) -> Calibration:
+        arm = None if self.lever_arm_m is None else np.array(self.lever_arm_m)
+        return Calibration(
+            boresight_rad=np.array(self.boresight_rad),
+            lever_arm_m=arm,
+            covariance=self.covariance,
+            block=self.block,
+            camera=self.camera,
+            n_images=self.n_images,
+            posstats_version=self.posstats_version,
+        )

@@ -1,0 +1,1 @@
+"""The second source paper's experiment: POS errors removed within the adjustment of a block."""
