@@ -22,13 +22,18 @@ from posstats.accuracy import (
 from posstats.adjustment_settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.block import Block, GroundPoints, Orientations
 from posstats.bundle import adjust
-from posstats.bundle_axes import images_with_wrong_axes
 from posstats.bundle_block import bundle_problem
 from posstats.bundle_check_points import intersect_apart
 from posstats.bundle_diagnosis import GROSS, likely_mistake
 from posstats.bundle_observability import Undetermined, singular_message, undetermined
 from posstats.bundle_priors import with_fitting_priors
-from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
+from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.bundle_screening import (
+    contradicting_rays,
+    pos_holds,
+    without_control,
+    without_rays,
+)
 from posstats.bundle_selection import Dropped, select_parameters
 from posstats.bundle_snooping import Snooping, snoop
 from posstats.bundle_tests import (
@@ -58,8 +63,6 @@ __all__ = [
 ]
 
 ORIENTATION = "bundle"
-_FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
-_WEAK_POS = 100.0  # times the stated sigmas, where rays are judged by themselves
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,9 +178,10 @@ def adjust_block(
     stated = replace(stated, bauer_radius_mm=settings.bauer_radius_mm)
     ids = block.orientations.image
     try:
+        _require_points(stated)
         rejected = _screened(stated, settings, report)
         report("adjustment", 0.3)
-        problem = _without(stated, rejected)
+        problem = without_rays(stated, rejected)
         adjusted = adjust(problem)
         _refuse_mistakes(tied, stated, control, adjusted.sigma0)
         problem = with_fitting_priors(problem, adjusted)
@@ -234,62 +238,24 @@ def _some(surveyed: GroundPoints, keep: _Bools) -> GroundPoints:
     )
 
 
+def _require_points(stated: BundleProblem) -> None:
+    if len(stated.point) == 0:
+        raise GeometryError("the rays of no point meet in front of the images: check the POS")
+
+
 def _screened(stated: BundleProblem, settings: AdjustmentSettings, report: Progress) -> _Bools:
     """(m,) rejected rays."""
     if not settings.robust:
         return np.zeros(len(stated.point), dtype=bool)
     report("robust adjustment", 0.05)
-    return _contradicting(stated, lambda k, n: report("robust adjustment", 0.05 + 0.25 * k / n))
-
-
-def _contradicting(stated: BundleProblem, advance: Callable[[int, int], object]) -> _Bools:
-    """(m,) rays that contradict other rays, whatever control and POS say.
-
-    Control is left out and POS weak, so that a wrong control point or exposure does not turn
-    good rays into bad ones. Images of wrong axes are left to data snooping, which names them.
-    """
-    wrong = np.isin(stated.image, images_with_wrong_axes(stated))
-    pos = stated.pos
-    weak = replace(
-        pos,
-        sigma_antenna_m=_WEAK_POS * pos.sigma_antenna_m,
-        sigma_angles_rad=_WEAK_POS * pos.sigma_angles_rad,
-    )
-    relaxed = replace(_without(stated, wrong), pos=weak)
-    if _pos_holds(stated):
-        relaxed = _without_control(relaxed)
-    result = adjust(relaxed, robust=True, progress=advance)
-    image = result.groups["image"]
-    sigma_px = stated.sigma_px * np.sqrt(image.square_sum / max(image.redundancy, 1.0))
-    far = np.abs(result.residual_px).max(axis=1) > _FAR * sigma_px
-    known = np.isfinite(result.ground_m[stated.point, 0])
-    contradicting: _Bools = result.rejected & far & known & ~wrong
-    return contradicting
-
-
-def _pos_holds(problem: BundleProblem) -> bool:
-    """Whether every image has POS positions and angles with a weight."""
-    return bool((problem.pos.weight > 0.0).all())
-
-
-def _without(problem: BundleProblem, rays: _Bools) -> BundleProblem:
-    """The problem without weight of rays (m,)."""
-    return replace(problem, sigma_px=np.where(rays, np.inf, problem.sigma_px))
-
-
-def _without_control(problem: BundleProblem) -> BundleProblem:
-    control = problem.control
-    return replace(
-        problem,
-        control=Control(control.point[:0], control.position_m[:0], control.covariance_m2[:0]),
-    )
+    return contradicting_rays(stated, lambda k, n: report("robust adjustment", 0.05 + 0.25 * k / n))
 
 
 def _first_weights(problem: BundleProblem) -> EstimatedWeights | None:
     """Weights for data snooping: without control, whose blunders would hide in its variance."""
-    if not _pos_holds(problem):
+    if not pos_holds(problem):
         return None
-    found = estimate_weights(_without_control(problem))
+    found = estimate_weights(without_control(problem))
     return replace(found, problem=replace(found.problem, control=problem.control))
 
 
@@ -332,7 +298,7 @@ def _result(
         adjusted=adjusted,
         overall=global_test(adjusted),
         parameters=tests,
-        common_correlations=correlations(adjusted),
+        common_correlations=_correlations(adjusted),
         single=local_tests(problem, adjusted),
         snooping=snooping,
         dropped=dropped,
@@ -344,6 +310,13 @@ def _result(
         check_point_position_m=position,
         check_point_covariance_m2=covariance,
     )
+
+
+def _correlations(adjusted: AdjustedBundle) -> Correlations:
+    if len(adjusted.common):
+        return correlations(adjusted)
+    none, values = np.empty(0, dtype=np.intp), np.empty(0)
+    return Correlations(none, none, values, none, none, values)
 
 
 def _orientations(block: Block, adjusted: AdjustedBundle) -> Orientations:

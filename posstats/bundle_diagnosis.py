@@ -15,6 +15,7 @@ from posstats.block import Block, Orientations
 from posstats.bundle import adjust
 from posstats.bundle_block import bundle_problem
 from posstats.bundle_parameters import CommonParameter
+from posstats.bundle_screening import contradicting_rays, without_rays
 from posstats.errors import ConvergenceError, GeometryError
 
 _Bools = NDArray[np.bool_]
@@ -49,8 +50,11 @@ def likely_mistake(
 
 
 def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: _Bools) -> float:
+    problem = bundle_problem(block, parameters, control=control)
+    if len(problem.point) == 0:
+        return float("inf")
     try:
-        return adjust(bundle_problem(block, parameters, control=control), robust=True).sigma0
+        return adjust(without_rays(problem, contradicting_rays(problem))).sigma0
     except (ConvergenceError, GeometryError):
         return float("inf")
 

@@ -53,12 +53,12 @@ _FAMILIES: tuple[tuple[tuple[str, ...], str, str], ...] = (
     (
         GNSS_SHIFTS,
         "shifting all antenna positions of the scope shifts its images and points as a whole",
-        "a full control point within the scope",
+        "full control points within the scope, or more of them",
     ),
     (
         GNSS_DRIFTS,
         "a drift of antenna positions stretches, shears or tilts the images and points as a whole",
-        "control points at the beginning and the end of the scope, and across it",
+        "full control points at the beginning and the end of the scope, and beside it",
     ),
     (
         ("boresight_yaw", "imu_kappa_shift"),

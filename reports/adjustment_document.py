@@ -37,10 +37,13 @@ def build(results: Results) -> ReportDocument:
 
 def _subtitle(results: Results) -> str:
     block = results["block"]
-    counted = {"n_images": "images", "n_strips": "strips", "n_rays": "image rays",
-               "n_tie_points": "tie points", "n_control_points": "control points",
-               "n_check_points": "check points"}  # fmt: skip
-    return " · ".join(f"{fmt.count(block[key])} {words}" for key, words in counted.items())
+    counted = {"n_images": "image", "n_strips": "strip", "n_rays": "image ray",
+               "n_tie_points": "tie point", "n_control_points": "control point",
+               "n_check_points": "check point"}  # fmt: skip
+    return " · ".join(
+        f"{fmt.count(block[key])} {word}{'' if block[key] == 1 else 's'}"
+        for key, word in counted.items()
+    )
 
 
 def _parts(results: Results, drawings: dict[str, Drawing]) -> tuple[Part, ...]:
@@ -137,8 +140,8 @@ def _points(results: Results, drawings: dict[str, Drawing]) -> Part:
 def _blunders(results: Results) -> Part:
     text = (
         "A robust adjustment without control and with weak POS first takes out rays that "
-        "contradict other rays. Data snooping then tests every observation by its standardised residual w, "
-        "takes out the worst, and adjusts again until none is left."
+        "contradict other rays. Data snooping then tests every observation by its "
+        "standardised residual w, takes out the worst, and adjusts again until none is left."
     )
     if not results["snooping_complete"]:
         text += " It stopped before that: more blunders may be in the block."

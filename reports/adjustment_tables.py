@@ -6,6 +6,7 @@ from . import format as fmt
 from .adjustment_view import GROUPS, KINDS, parameter_words, shown_unit
 from .results_view import Results, Row, rows, scope_label
 from .tables import (
+    Column,
     Table,
     aligned_column,
     count_column,
@@ -56,7 +57,7 @@ def parameters(results: Results) -> Table:
     columns = (
         text_column("Parameter", [parameter_words(row["name"]) for row in kept]),
         text_column("Scope", [scope_label(row["scope"]) for row in kept]),
-        number_column("Value", "", _scaled(kept, "value", scaled)),
+        Column("Value", _to_sigma(kept, scaled)),
         number_column("Std. dev.", "", _scaled(kept, "sigma", scaled), 2),
         text_column("Unit", [unit.name for unit in scaled]),
         aligned_column("t", "", [row["t"] for row in kept]),
@@ -80,6 +81,17 @@ def parameters(results: Results) -> Table:
 
 def _scaled(kept: Sequence[Row], key: str, units: Sequence[fmt.Unit]) -> list[float | None]:
     return [unit.scaled(row[key]) for row, unit in zip(kept, units, strict=True)]
+
+
+def _to_sigma(kept: Sequence[Row], units: Sequence[fmt.Unit]) -> tuple[str, ...]:
+    """Values with the decimals that two digits of their standard deviations have."""
+    values, sigmas = _scaled(kept, "value", units), _scaled(kept, "sigma", units)
+    return tuple(
+        fmt.number(value)
+        if fmt.is_missing(sigma) or not 1e-4 < abs(sigma or 0.0) < 1e6
+        else fmt.fixed(value, fmt.shared_decimals([sigma], 2))
+        for value, sigma in zip(values, sigmas, strict=True)
+    )
 
 
 def _source(row: Row) -> str:
@@ -124,20 +136,26 @@ def _named(row: Row, which: str) -> str:
 
 def observability(results: Results) -> Table:
     """What the measurements leave open."""
-    kept = rows(results, "observability")
+    alike: dict[tuple[object, ...], list[Row]] = {}
+    for row in rows(results, "observability"):
+        scope = row["scope"] == "block"
+        alike.setdefault((row["kind"], scope, *row["names"], row["reason"]), []).append(row)
+    kept = [same[0] for same in alike.values()]
     columns = (
-        prose_column("What", [_subject(row) for row in kept]),
+        prose_column("What", [_subject(same) for same in alike.values()]),
         prose_column("Why", [row["reason"] for row in kept]),
         prose_column("What would determine it", [row["remedy"] for row in kept]),
     )
     return Table("observability", "What the measurements do not determine.", columns)
 
 
-def _subject(row: Row) -> str:
-    names = row["names"]
-    if row["kind"] == "parameter":
+def _subject(same: Sequence[Row]) -> str:
+    """What is open, in all scopes in which it is open alike."""
+    names, scopes = same[0]["names"], [row["scope"] for row in same]
+    if same[0]["kind"] == "parameter":
         words = fmt.joined(parameter_words(name) for name in names)
-        return words if row["scope"] == "block" else f"{words} of strip {row['scope']}"
+        plural = "s" if len(scopes) > 1 else ""
+        return words if scopes == ["block"] else f"{words} of strip{plural} {fmt.joined(scopes)}"
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     return ", ".join(names[:12]) + more
 
@@ -175,7 +193,7 @@ def orientations(results: Results) -> Table:
     """Accuracy of the adjusted orientations, and what the POS differs from them."""
     kept = rows(results, "orientations")
     units = [fmt.DEGREE if row["unit"] == "rad" else fmt.METRE for row in kept]
-    words = {"median_sigma": "Median", "max_sigma": "largest", "pos_mean": "mean", "pos_rms": "RMS"}
+    words = {"median_sigma": "median", "max_sigma": "largest", "pos_mean": "mean", "pos_rms": "RMS"}
     heads = {"median_sigma": "standard deviation", "max_sigma": "standard deviation",
              "pos_mean": "POS minus adjusted", "pos_rms": "POS minus adjusted"}  # fmt: skip
     columns = [
@@ -183,7 +201,7 @@ def orientations(results: Results) -> Table:
         text_column("Unit", [unit.name for unit in units]),
     ]
     columns += [
-        number_column(title.lower(), "", _scaled(kept, key, units), group=heads[key])
+        number_column(title, "", _scaled(kept, key, units), group=heads[key])
         for key, title in words.items()
     ]
     caption = "Adjusted orientations: how well they are known, and how far the POS is from them."

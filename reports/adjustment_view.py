@@ -21,10 +21,11 @@ KINDS = {
     "imu": "IMU angles",
     "control": "control point",
 }
-_UNITS: Mapping[str, tuple[fmt.Unit, ...]] = {
-    "rad": (fmt.DEGREE,),
-    "rad/s": (fmt.NANORADIAN_PER_SECOND,),
-    "m/s": (fmt.Unit("mm/s", 1e3),),
+_UNITS: Mapping[str, fmt.Unit] = {
+    "rad": fmt.DEGREE,
+    "rad/s": fmt.NANORADIAN_PER_SECOND,
+    "m/s": fmt.Unit("mm/s", 1e3),
+    "1/mm2": fmt.Unit("1/mm²", 1.0),
 }
 DRIFTS = {"none": "no POS parameters", "block": "for the block", "strip": "for every strip"}
 CONTROL = {
@@ -54,7 +55,7 @@ def parameter_words(name: str) -> str:
 
 def shown_unit(unit: str) -> fmt.Unit:
     """The unit in which values of a unit of the results are shown."""
-    return _UNITS.get(unit, (fmt.Unit(unit, 1.0),))[0]
+    return _UNITS.get(unit, fmt.Unit(unit, 1.0))
 
 
 def value_words(row: Row, key: str = "value") -> str:
