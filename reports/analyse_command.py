@@ -5,6 +5,7 @@ from pathlib import Path
 
 from posstats.analysis import Settings, analyse
 from posstats.block_io import read_block
+from posstats.calibration import calibrated
 
 from .analysis_folder import write_analysis
 from .output import staged_folder
@@ -14,10 +15,14 @@ from .summary import summary
 from .timestamp import now
 
 
-def analyse_block(folder: Path, out: Path, settings: Settings, *, pdf: bool) -> Iterator[str]:
+def analyse_block(
+    folder: Path, out: Path, settings: Settings, calibration: Path | None, *, pdf: bool
+) -> Iterator[str]:
     """Analyse a block folder into `out`; yields the lines of the terminal summary."""
     with staged_folder(out) as stage, progress_bar("reading the block") as progress:
         block = read_block(folder)
+        if calibration is not None:
+            block = calibrated(block, calibration)
         analysis = analyse(block, settings, progress=lambda step, done: progress(step, 0.7 * done))
         values = write_analysis(analysis, stage, created=now())
         progress("writing the report", 0.75)

@@ -85,6 +85,7 @@ def cli() -> None:
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
+@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
 @_clear_errors
 def analyse(
@@ -95,6 +96,7 @@ def analyse(
     errors: Literal["coplanarity", "adjusted"],
     frame: Literal["ground", "camera", "auto"],
     robust: bool,
+    calibration: Path | None,
     no_pdf: bool,
 ) -> None:
     """Analyse the block folder BLOCK and write its report.
@@ -111,7 +113,8 @@ def analyse(
     from .analyse_command import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
-    for line in analyse_block(block, out or _default_out(block), settings, pdf=not no_pdf):
+    target = out or _default_out(block)
+    for line in analyse_block(block, target, settings, calibration, pdf=not no_pdf):
         click.echo(line)
 
 
@@ -193,6 +196,50 @@ def adjust(
 
 
 @cli.command()
+@click.argument("block", type=FOLDER)
+@click.option("--out", type=FOLDER, required=True, metavar="FILE", help="TOML file to write.")
+@click.option(
+    "--control",
+    metavar="none|centre|corners|all|FILE",
+    help="Control points, as of adjust.  [default: the roles of ground_points.csv]",
+)
+@click.option(
+    "--drift",
+    type=click.Choice(["block", "strip"]),
+    default="strip",
+    show_default=True,
+    help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
+)
+@click.option("--lever-arm", is_flag=True, help="Estimate the lever arm too.")
+@_clear_errors
+def calibrate(
+    block: Path,
+    out: Path,
+    control: str | None,
+    drift: Literal["block", "strip"],
+    lever_arm: bool,
+) -> None:
+    """Estimate the boresight of the POS from the calibration flight BLOCK.
+
+    Writes boresight and lever arm with their covariance, and the block and camera they belong to.
+    Other commands take the file with --calibration.
+
+    \b
+    Example:
+      posstats calibrate field --out boresight.toml
+      posstats analyse flight7 --calibration boresight.toml
+    """
+    from posstats.adjustment import AdjustmentSettings
+
+    from .adjust_command import control_choice
+    from .calibrate_command import calibrate_folder
+
+    settings = AdjustmentSettings(control=control_choice(control), drift=drift)
+    for line in calibrate_folder(block, out, settings, lever_arm=lever_arm):
+        click.echo(line)
+
+
+@cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
@@ -217,11 +264,36 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
 
 
 @cli.command()
+@click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
+)
+@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@_clear_errors
+def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
+    """Reproduce the second source paper: POS errors removed in the bundle adjustment.
+
+    Needs no input. Simulates a flat block at 1:2 500 and a mountainous one at 1:32 000, orients
+    them in every way the paper compares, and writes wucaps.html, wucaps.pdf and wucaps.json.
+    Files of the same names are replaced.
+
+    \b
+    Example:
+      posstats wucaps --out wucaps --seed 7
+    """
+    from .wucaps_command import reproduce_wucaps
+
+    for line in reproduce_wucaps(out, seed, pdf=not no_pdf):
+        click.echo(line)
+
+
+@cli.command()
 @click.option(
     "--scenario",
     type=FOLDER,
     metavar="FILE",
-    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, area3.",
+    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, "
+    "area3, wucaps-flat, wucaps-mountain.",
 )
 @click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")

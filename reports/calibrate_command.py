@@ -1,0 +1,46 @@
+"""`posstats calibrate`: from the block folder of a calibration flight to a calibration file."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from posstats.adjustment import AdjustmentSettings, adjust_block
+from posstats.block_io import read_block
+from posstats.calibration import Calibration, calibrate, write_calibration
+from posstats.errors import PosstatsError
+
+from . import format as fmt
+from .progress import progress_bar
+
+
+def calibrate_folder(
+    folder: Path, out: Path, settings: AdjustmentSettings, *, lever_arm: bool
+) -> Iterator[str]:
+    """Estimate the calibration of a block folder into the file `out`; yields what it is.
+
+    Raises
+    ------
+    PosstatsError
+        If the file cannot be in that place, or the block cannot be adjusted.
+    """
+    if out.is_dir() or not out.parent.is_dir():
+        raise PosstatsError(f"{out} cannot be written: is it a file in a folder that exists?")
+    with progress_bar("reading the block") as progress:
+        adjustment = adjust_block(read_block(folder), settings, progress=progress)
+        calibration = calibrate(adjustment, lever_arm=lever_arm)
+    write_calibration(calibration, out)
+    yield f"camera {calibration.camera}, from {calibration.n_images} images of {calibration.block}"
+    yield from _described(calibration)
+    yield f"calibration: {out}"
+
+
+def _described(calibration: Calibration) -> Iterator[str]:
+    values = list(np.degrees(calibration.boresight_rad))
+    sigmas = np.sqrt(np.diagonal(calibration.covariance))
+    shown = [*np.degrees(sigmas[:3]), *sigmas[3:]]
+    if calibration.lever_arm_m is not None:
+        values += list(calibration.lever_arm_m)
+    for k, (name, value, sigma) in enumerate(zip(calibration.names, values, shown, strict=True)):
+        decimals, unit = (4, "°") if k < 3 else (3, " m")
+        yield f"{name}: {fmt.fixed(value, decimals)}{unit} ± {fmt.fixed(sigma, decimals)}{unit}"
