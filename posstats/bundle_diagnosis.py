@@ -1,7 +1,7 @@
 """Why measurements contradict each other grossly: the usual mistakes are tried out.
 
 Wrong conventions pass the checks of the format: angles of another system or in another order, and
-coordinates whose axes are exchanged. Each is undone in turn and the block adjusted again; the one
+coordinates whose axes are exchanged. Each is undone in turn and the block adjusted again; the first
 that makes the contradiction go away is named.
 """
 
@@ -31,7 +31,7 @@ def likely_mistake(
     control: _Bools,
     sigma0: float,
 ) -> str | None:
-    """The mistake in words that, undone, brings sigma0 down to a fifth; None if there is none.
+    """The first mistake in words that, undone, brings sigma0 down to a fifth; None without.
 
     Parameters
     ----------
@@ -42,11 +42,10 @@ def likely_mistake(
     sigma0
         Of the block as it is; infinite where it could not be adjusted.
     """
-    found = {words: _sigma0(other, parameters, control) for words, other in _undone(block)}
-    if not found:
-        return None
-    words = min(found, key=lambda each: found[each])
-    return words if found[words] < _CURED * min(sigma0, 1.0 / _CURED * GROSS) else None
+    limit = min(_CURED * sigma0, GROSS)
+    return next(
+        (w for w, other in _undone(block) if _sigma0(other, parameters, control) < limit), None
+    )
 
 
 def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: _Bools) -> float:
