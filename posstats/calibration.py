@@ -126,11 +126,20 @@ def calibration_of(block: Block, problem: BundleProblem, adjusted: AdjustedBundl
     )
 
 
-def apply_calibration(block: Block, calibration: Calibration) -> Block:
+def apply_calibration(block: Block, calibration: Calibration, *, unknown: bool = False) -> Block:
     """The block with the calibration taken off its POS.
 
-    The standard deviations of the POS grow by those of the calibration, which all images share:
-    as correlated errors they do not average out over the block.
+    Parameters
+    ----------
+    block
+        With POS as recorded.
+    calibration
+        Of its camera.
+    unknown
+        Whether what follows estimates boresight and lever arm anew. If so, that unknown takes
+        up the error of the calibration, and the standard deviations of the POS stay. Otherwise
+        they grow by those of the calibration, which all images share: as correlated errors these
+        do not average out over the block.
 
     Raises
     ------
@@ -138,6 +147,9 @@ def apply_calibration(block: Block, calibration: Calibration) -> Block:
         If the block has another camera.
     """
     _require_camera(block, calibration)
+    if unknown:
+        exact = replace(calibration, covariance=np.zeros_like(calibration.covariance))
+        return apply_calibration(block, exact)
     pos = block.orientations
     turn = rotation_from_angles(calibration.boresight_rad[_PITCH_ROLL_YAW], "omega-phi-kappa")
     turned = corrected(pos, np.tile(vector_from_rotation(turn), (len(pos), 1)), "camera")

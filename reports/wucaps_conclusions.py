@@ -96,7 +96,8 @@ def _calibration_is_dispensable(run: Reproduction) -> Conclusion:
         "The adjustment calibrates itself: a POS calibrated before gives no better result.",
         "Drifts weighted, recommended control, RMSE H / V:",
         shown,
-        f"Holds if the calibrated one is better by less than {_NEAR}.",
+        "The boresight is an unknown of the adjustment, so taking one off before only shifts its "
+        f"value. Holds if the calibrated POS is better by less than {_NEAR}.",
     )  # fmt: skip
 
 

@@ -135,6 +135,15 @@ def test_standard_deviations_grow_by_those_of_the_calibration():
     np.testing.assert_allclose(pos.sigma_position_m, expected, rtol=0.05)
 
 
+def test_standard_deviations_stay_where_the_boresight_is_estimated_anew():
+    block, calibration = flown(), made_up(LEVER_ARM_M)
+    pos = apply_calibration(block, calibration, unknown=True).orientations
+    np.testing.assert_array_equal(pos.sigma_angles_rad, block.orientations.sigma_angles_rad)
+    np.testing.assert_array_equal(pos.sigma_position_m, block.orientations.sigma_position_m)
+    known = apply_calibration(block, calibration).orientations
+    np.testing.assert_array_equal(pos.angles_rad, known.angles_rad)
+
+
 @pytest.mark.parametrize("lever_arm_m", [None, LEVER_ARM_M])
 def test_a_file_gives_back_what_was_written(tmp_path, lever_arm_m):
     written = replace(made_up(lever_arm_m), block='field "7"\x7f', camera="caméra")

@@ -184,10 +184,12 @@ def _without_strip_lines(analysis: Analysis) -> Orientations:
 
 
 def _bundles(flights: Flights, models: StereoModels, calibration: Calibration) -> Iterator[Row]:
-    blocks = {False: flights.flight, True: apply_calibration(flights.flight, calibration)}
     for method, (unknowns, calibrated) in _BUNDLES.items():
+        block = flights.flight
+        if calibrated:
+            block = apply_calibration(block, calibration, unknown=unknowns != "none")
         for control in CONTROLS:
-            yield _bundle(blocks[calibrated], models, method, control, unknowns)
+            yield _bundle(block, models, method, control, unknowns)
     yield _bundle(flights.without_errors, models, "reference", "all", "none")
 
 
