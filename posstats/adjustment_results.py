@@ -29,6 +29,7 @@ Row = dict[str, Any]
 SCHEMA = "posstats-adjustment/1"
 ELEMENTS = (*ANGLE_NAMES, "x", "y", "z")
 _GROUP_UNITS = {"image": "px", "gnss": "m", "imu": "rad", "control": "m"}
+_MANY = 0.2  # share of the images from which blunders are none
 _CELLS = 12  # of the image format along its longer side
 
 
@@ -352,6 +353,15 @@ def _cells(adjustment: Adjustment) -> Iterator[Row]:
 
 
 def _warnings(adjustment: Adjustment) -> Iterator[str]:
+    n_images = len(adjustment.block.orientations)
+    for kind, words in (("gnss", "GNSS positions"), ("imu", "IMU angles")):
+        n = sum(blunder.kind == kind for blunder in adjustment.snooping.blunders)
+        if n > _MANY * n_images:
+            yield (
+                f"the {words} of {n} of {n_images} images contradict the other observations: this"
+                " is no blunder but a systematic error that no parameter describes (--drift block"
+                " or strip), or their stated accuracy is too optimistic"
+            )
     if not adjustment.snooping.complete:
         yield (
             "data snooping stopped at its largest number of blunders: the stated weights may be too"

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from . import format as fmt
-from .adjustment_view import KINDS, group, parameter_words, predicted_rmse, value_words
+from .adjustment_view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
 from .key_figures import KeyFigure
 from .results_view import Results, Row, first, rows
 
@@ -105,14 +105,20 @@ def _m(value: float) -> str:
 
 def _blunders(results: Results) -> str:
     taken = rows(results, "blunders", found_by="snooping", taken_out=True)
-    named = [_named(row) for row in taken if row["kind"] != "image"]
+    parts = []
+    for kind in dict.fromkeys(row["kind"] for row in taken if row["kind"] != "image"):
+        same = [row for row in taken if row["kind"] == kind]
+        parts += [_named(row) for row in same] if len(same) <= SHOWN else [_counted(kind, same)]
     n_rays = sum(row["kind"] == "image" for row in taken) + results["n_rejected_rays"]
-    parts = named[:SHOWN]
-    if len(named) > SHOWN:
-        parts.append(f"{len(named) - SHOWN} more observations of POS or control")
     if n_rays:
         parts.append("one image ray" if n_rays == 1 else f"{fmt.count(n_rays)} image rays")
     return f"Taken out as blunders: {fmt.joined(parts)}." if parts else "No blunders were found."
+
+
+def _counted(kind: str, same: list[Row]) -> str:
+    if kind == "control":
+        return f"{len(same)} control points"
+    return f"{SEVERAL[kind]} of {len(same)} images"
 
 
 def _named(row: Row) -> str:

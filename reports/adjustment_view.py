@@ -21,6 +21,7 @@ KINDS = {
     "imu": "IMU angles",
     "control": "control point",
 }
+SEVERAL = {"axes": "the axes", "gnss": "GNSS positions", "imu": "IMU angles"}
 _UNITS: Mapping[str, fmt.Unit] = {
     "rad": fmt.DEGREE,
     "rad/s": fmt.NANORADIAN_PER_SECOND,

@@ -168,6 +168,11 @@ def test_a_block_without_additional_parameters_is_adjusted(block):
     assert adjustment_results(plain)["correlations"] == []
 
 
+def test_a_systematic_error_without_parameters_is_called_by_its_name(tiny):
+    values = adjustment_results(adjust_block(tiny, AdjustmentSettings("all", drift="none")))
+    assert any("IMU angles of 15 of 15 images contradict" in each for each in values["warnings"])
+
+
 def test_insignificant_parameters_are_dropped_on_request(block):
     settings = AdjustmentSettings(
         control="corners", self_calibration="brown", drop_insignificant=True
