@@ -88,7 +88,7 @@ def _verdict(run: Reproduction, found: Sequence[Conclusion]) -> str:
 def _key_figures(run: Reproduction) -> tuple[KeyFigure, ...]:
     figures = []
     for situation, each in run.findings.items():
-        best = f"{_pair(each.reference_horizontal_m, each.reference_vertical_m)}\u00a0m at best"
+        best = _pair(each.reference_horizontal_m, each.reference_vertical_m)
         name = each.recommended
         figures.append(
             KeyFigure(
@@ -100,10 +100,10 @@ def _key_figures(run: Reproduction) -> tuple[KeyFigure, ...]:
         )
         figures.append(
             KeyFigure(
-                f"{situation.capitalize()}, adjusted, {CONTROL[RECOMMENDED[situation]]}",
+                f"{situation.capitalize()}, adjusted",
                 _pair(getattr(each, f"{name}_horizontal_m"), getattr(each, f"{name}_vertical_m")),
                 "m",
-                best,
+                f"control {CONTROL[RECOMMENDED[situation]]}; at best {best}\u00a0m",
             )
         )
     return tuple(figures)

@@ -161,11 +161,7 @@ def _one_decimal(title: str, values: Iterable[float | None], unit: fmt.Unit) -> 
 
 
 def _names(rows: Sequence[Row]) -> tuple[Column, Column]:
-    previous = [None, *(row.method for row in rows)]
-    methods = [
-        "" if row.method == before else METHODS[row.method]
-        for row, before in zip(rows, previous, strict=False)
-    ]
+    methods = [METHODS[row.method] for row in rows]
     controls = [
         fmt.MISSING if row.control is None
         else CONTROL[row.control] + ("*" if row.undetermined else "")
