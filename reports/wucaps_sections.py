@@ -157,9 +157,9 @@ def _repeated(run: Reproduction) -> Part:
         f"all check points. The experiment was repeated with {n_seeds} seeds. Over these the RMSE "
         "of the weighted adjustments agree with what their covariances predict to "
         f"{fmt.fixed(worst, 0)}\u00a0% or better, whatever the control points. With the "
-        f"recommended control they are {_over_reference(run)} times those without systematic errors. That "
-        "single runs exceed the limits of 2.0 and 2.2 is the scatter of so few shifts and drifts: "
-        "in the flat block, where these are large against the image noise, they often come close."
+        f"recommended control they are {_over_reference(run)} times those without systematic "
+        "errors. That single runs exceed the limits of 2.0 and 2.2 is the scatter of so few shifts "
+        "and drifts, which in the flat block are large against the image noise."
     )
     return Part(
         "repeated",
