@@ -60,7 +60,10 @@ def _conclusions(found: Sequence[Conclusion], beyond: Sequence[Conclusion]) -> P
         "paper found; it does not prove what its aircraft did."
     )
     caption = "The paper's conclusions, each with the evidence of the simulated blocks."
-    asked = "What the paper leaves open, judged alike."
+    asked = (
+        "What the paper leaves open, judged alike by this run. How many seeds agree says more than "
+        "one run."
+    )
     return Part(
         "conclusions",
         "Conclusions",
