@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 from posstats.accuracy import CheckPointResiduals, check_point_residuals
 from posstats.angle_errors import (
     AngleErrors,
+    ErrorSource,
     adjusted_errors,
+    bundle_errors,
     coplanarity_errors,
     in_camera_frame,
 )
 from posstats.block import Block, Orientations
 from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
+from posstats.imu_free_bundle import ImuFreeBundle, adjust_imu_free
 from posstats.parallax import model_rms_px
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.relative_orientation import Method, RelativeOrientation, orient
@@ -28,7 +31,6 @@ from posstats.validation import out_of_sample_parallax
 
 _Floats = NDArray[np.float64]
 Scope = Literal["block", "strip"]
-ErrorSource = Literal["coplanarity", "adjusted"]
 FrameChoice = Literal["ground", "camera", "auto"]
 Progress = Callable[[str, float], object]
 
@@ -47,7 +49,8 @@ class Settings:
     scope
         Correct by one function of time for the block, or by one for every strip.
     errors
-        Where angle errors come from: tie points, or the block's adjusted orientation.
+        Where angle errors come from: coplanarity of the tie points' rays, a bundle adjustment with
+        control points, or the block's adjusted orientation.
     frame
         Frame of the regression; ``auto`` takes the one with less parallax out of sample.
     robust
@@ -119,7 +122,10 @@ class Analysis:
         By "omega", "phi", "kappa" (the line of each angle alone, ground frame) and "selected":
         orientations, and (p,) RMS y-parallax of the models.
     check_points
-        Residuals of "pos", of every correction, and of "adjusted" if the block has it.
+        Residuals of "pos", of every correction, of "adjusted" if the block has it, and of "bundle"
+        if it was made.
+    bundle
+        Where angle errors came from, or None if from elsewhere.
     """
 
     block: Block
@@ -135,6 +141,7 @@ class Analysis:
     corrected_orientations: dict[str, Orientations]
     corrected_px: dict[str, _Floats]
     check_points: tuple[CheckPointResiduals, ...]
+    bundle: ImuFreeBundle | None = None
 
 
 def analyse(
@@ -169,7 +176,7 @@ def analyse(
     independent = orient(models, "independent", robust=settings.robust)
     dependent = orient(models, "dependent", independent=independent)
     fixed = {str(name): orient(models, name, independent=independent) for name in FIXED}
-    errors = _angle_errors(block, models, settings, report)
+    errors, bundle = _angle_errors(block, models, settings, report)
     report("regression", 0.8)
     frames = _frames(models, errors, rules, settings)
     chosen, frame_reason = _chosen_frame(frames)
@@ -192,7 +199,8 @@ def analyse(
             name: model_rms_px(models.with_orientations(each))
             for name, each in orientations.items()
         },
-        check_points=_check_points(block, orientations),
+        check_points=_check_points(block, orientations, bundle),
+        bundle=bundle,
     )
 
 
@@ -202,14 +210,18 @@ def _no_progress(_step: str, _done: float) -> None:
 
 def _angle_errors(
     block: Block, models: StereoModels, settings: Settings, report: Progress
-) -> AngleErrors:
+) -> tuple[AngleErrors, ImuFreeBundle | None]:
+    """The errors, and the bundle they come from if it is one."""
     if settings.errors == "adjusted":
-        return adjusted_errors(block)
+        return adjusted_errors(block), None
 
     def advance(done: int, total: int) -> None:
-        report("coplanarity adjustment", 0.1 + 0.7 * done / total)
+        report(f"{settings.errors} adjustment", 0.1 + 0.7 * done / total)
 
-    return coplanarity_errors(block, models, robust=settings.robust, progress=advance)
+    if settings.errors == "bundle":
+        bundle = adjust_imu_free(block, robust=settings.robust, progress=advance)
+        return bundle_errors(block, bundle), bundle
+    return coplanarity_errors(block, models, robust=settings.robust, progress=advance), None
 
 
 def _frames(
@@ -283,9 +295,10 @@ def _line_of(
 
 
 def _check_points(
-    block: Block, orientations: dict[str, Orientations]
+    block: Block, orientations: dict[str, Orientations], bundle: ImuFreeBundle | None
 ) -> tuple[CheckPointResiduals, ...]:
     sources = {"pos": block.orientations} | orientations
     if block.adjusted is not None:
         sources["adjusted"] = block.adjusted
-    return tuple(check_point_residuals(block, each, name) for name, each in sources.items())
+    residuals = (check_point_residuals(block, each, name) for name, each in sources.items())
+    return (*residuals, *(() if bundle is None else (bundle.check_points,)))

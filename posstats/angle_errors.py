@@ -1,7 +1,8 @@
 """Angle errors of the POS: what the recorded angles differ from the estimated ones.
 
 error = POS angle - estimated angle, per image. The estimate is the coplanarity adjustment of the
-block (`coplanarity_errors`) or an adjusted orientation that came with it (`adjusted_errors`).
+block (`coplanarity_errors`), its bundle adjustment (`bundle_errors`), or an adjusted orientation
+that came with it (`adjusted_errors`).
 Errors live in the ground frame (omega, phi, kappa of the block's system) or in the camera frame
 (pitch, roll, yaw about image x, y, z: R_pos = R_estimated exp([e]x)).
 """
@@ -14,14 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations
-from posstats.coplanarity_adjustment import AdjustedBlock, Priors, adjust
-from posstats.coplanarity_pairs import SHORTEST_BASE, PointPairs, long_bases, point_pairs
+from posstats.coplanarity_adjustment import Priors, adjust
+from posstats.coplanarity_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.errors import GeometryError
+from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.observability import (
     UNDETERMINED_SHARE,
     EstimatedAngles,
     Observability,
     observability,
+    weak_prior_rad,
 )
 from posstats.rotation import (
     rotation_derivatives,
@@ -36,10 +39,9 @@ _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
 _Ints = NDArray[np.intp]
 _Ids = NDArray[np.object_]
+ErrorSource = Literal["coplanarity", "bundle", "adjusted"]
 
-SMALLEST_ANGLE_PRIOR_RAD = float(np.radians(1.0))
-ANGLE_PRIOR_FACTOR = 10.0
-_SHOWN_IMAGES = 10
+_SHOWN = 10
 _SMALL_ANGLE_RAD = 1e-3
 
 
@@ -52,7 +54,7 @@ class AngleErrors:
     frame
         ``ground``: omega, phi, kappa; ``camera``: pitch, roll, yaw.
     source
-        ``coplanarity`` or ``adjusted``.
+        ``coplanarity``, ``bundle`` or ``adjusted``.
     image, strip
         (n,) ids.
     time_s
@@ -73,7 +75,7 @@ class AngleErrors:
     """
 
     frame: Literal["ground", "camera"]
-    source: Literal["coplanarity", "adjusted"]
+    source: ErrorSource
     image: _Ids
     strip: _Ids
     time_s: _Floats
@@ -163,15 +165,39 @@ def coplanarity_errors(
     priors = Priors(
         angles_rad=pos.angles_rad,
         position_m=pos.position_m,
-        sigma_angles_rad=np.maximum(
-            SMALLEST_ANGLE_PRIOR_RAD, ANGLE_PRIOR_FACTOR * pos.sigma_angles_rad
-        ),
+        sigma_angles_rad=weak_prior_rad(pos.sigma_angles_rad),
         sigma_position_m=pos.sigma_position_m,
         system=pos.system,
         image_px=block.accuracy.image_px,
     )
-    errors = _errors(pos, pairs, priors, adjust(pairs, priors, robust=robust, progress=progress))
+    adjusted = adjust(pairs, priors, robust=robust, progress=progress)
+    estimate = _Estimate(
+        adjusted.angles_rad,
+        adjusted.covariance_rad2,
+        pairs.n_points_of_images(len(pos)),
+        adjusted.sigma_px,
+    )
+    errors = _errors(pos, "coplanarity", estimate)
     return replace(errors, warnings=_short_bases(long) + errors.warnings)
+
+
+def bundle_errors(block: Block, bundle: ImuFreeBundle) -> AngleErrors:
+    """POS angles minus the angles of the block's bundle adjustment, from `adjust_imu_free`."""
+    estimate = _Estimate(
+        bundle.adjusted.angles_rad, bundle.angle_covariance_rad2, bundle.n_points, bundle.sigma_px
+    )
+    errors = _errors(block.orientations, "bundle", estimate)
+    wrong = (
+        *_listed(
+            "POS positions that the rest of the block contradicts", bundle.contradicted_positions
+        ),
+        *_listed(
+            "control points that the rest of the block contradicts",
+            bundle.contradicted_control,
+            "control points",
+        ),
+    )
+    return replace(errors, warnings=errors.warnings + wrong)
 
 
 def _short_bases(long: _Bools) -> tuple[str, ...]:
@@ -185,24 +211,32 @@ def _short_bases(long: _Bools) -> tuple[str, ...]:
     )
 
 
-def _errors(
-    pos: Orientations, pairs: PointPairs, priors: Priors, adjusted: AdjustedBlock
-) -> AngleErrors:
+@dataclass(frozen=True, eq=False)
+class _Estimate:
+    """Angles (n, 3), their covariance (n, 3, n, 3), tie points (n,) of the images, image noise."""
+
+    angles_rad: _Floats
+    covariance_rad2: _Floats
+    n_points: _Ints
+    sigma_px: float
+
+
+def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> AngleErrors:
     n = len(pos)
-    n_points = pairs.n_points_of_images(n)
-    tied = n_points > 0
-    error = wrapped(pos.angles_rad - adjusted.angles_rad)
-    covariance = adjusted.covariance_rad2.copy()
+    tied = estimate.n_points > 0
+    error = wrapped(pos.angles_rad - estimate.angles_rad)
+    covariance = estimate.covariance_rad2.copy()
     variance = np.diagonal(covariance.reshape(3 * n, 3 * n)).reshape(n, 3)
-    limit = UNDETERMINED_SHARE * priors.sigma_angles_rad
+    prior_sigma = weak_prior_rad(pos.sigma_angles_rad)
+    limit = UNDETERMINED_SHARE * prior_sigma
     determined = tied & np.all(variance <= limit**2, axis=1)
     found = observability(
         EstimatedAngles(
             image=pos.image,
             strip=pos.strip,
             position_m=pos.position_m,
-            rotation_covariance_rad2=_about_ground_axes(covariance, adjusted.angles_rad, pos),
-            prior_sigma_rad=priors.sigma_angles_rad.min(axis=1),
+            rotation_covariance_rad2=_about_ground_axes(covariance, estimate.angles_rad, pos),
+            prior_sigma_rad=prior_sigma.min(axis=1),
             determined=determined,
             tied=tied,
         )
@@ -212,7 +246,7 @@ def _errors(
     covariance[:, :, ~tied] = np.nan
     return AngleErrors(
         frame="ground",
-        source="coplanarity",
+        source=source,
         image=pos.image,
         strip=pos.strip,
         time_s=pos.time_s,
@@ -220,8 +254,8 @@ def _errors(
         covariance_rad2=covariance,
         used=determined,
         observability=found,
-        sigma0=adjusted.sigma_px,
-        warnings=_undetermined(pos.image, n_points, determined),
+        sigma0=estimate.sigma_px,
+        warnings=_undetermined(pos.image, estimate.n_points, determined),
     )
 
 
@@ -244,13 +278,13 @@ def _undetermined(image: _Ids, n_points: _Ints, determined: _Bools) -> tuple[str
     )
 
 
-def _listed(finding: str, images: _Ids) -> tuple[str, ...]:
-    """One sentence that names the images, or none."""
-    if len(images) == 0:
+def _listed(finding: str, ids: _Ids, kind: str = "images") -> tuple[str, ...]:
+    """One sentence that names the images or points, or none."""
+    if len(ids) == 0:
         return ()
-    shown = ", ".join(images[:_SHOWN_IMAGES])
-    more = f" and {len(images) - _SHOWN_IMAGES} more" if len(images) > _SHOWN_IMAGES else ""
-    return (f"{finding} ({len(images)} of the images): {shown}{more}",)
+    shown = ", ".join(str(each) for each in ids[:_SHOWN])
+    more = f" and {len(ids) - _SHOWN} more" if len(ids) > _SHOWN else ""
+    return (f"{finding} ({len(ids)} of the {kind}): {shown}{more}",)
 
 
 def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErrors:

@@ -130,7 +130,8 @@ def adjust(
     if n_images > MAX_IMAGES:
         raise GeometryError(
             f"the coplanarity adjustment takes at most {MAX_IMAGES} images at once, the block has"
-            f" {n_images}: divide it, or use an adjusted orientation as the source of the errors"
+            f" {n_images}: divide it, or take the errors from a bundle adjustment or an adjusted"
+            " orientation"
         )
     frames = base_frames(priors.position_m[pairs.right] - priors.position_m[pairs.left])
     weighting = _Weighting("reweight" if robust else "plain", robust, np.ones(len(pairs.pair)))

@@ -11,6 +11,7 @@ from posstats.analysis import Analysis, FrameAnalysis
 from posstats.block import Block
 from posstats.drift import DriftFit
 from posstats.footprints import footprints
+from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.parallax import strip_statistics
 from posstats.regression import AngleRegression
 from posstats.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
@@ -194,6 +195,20 @@ def angle_error_summary_rows(frame: FrameAnalysis) -> Iterator[Row]:
             "max_abs_rad": np.abs(used).max() if any_used else None,
             "median_sigma_rad": np.median(sigma) if any_used else None,
         }
+
+
+def bundle_row(bundle: ImuFreeBundle) -> Row:
+    """The bundle adjustment that the angle errors come from."""
+    return {
+        "sigma0": bundle.overall.sigma0,
+        "dof": bundle.overall.dof,
+        "p_value": bundle.overall.p,
+        "image_rms_px": bundle.image_rms_px,
+        "sigma_image_px": bundle.sigma_px,
+        "n_rays": int((~bundle.adjusted.rejected).sum()),
+        "n_rejected_rays": bundle.n_rejected,
+        "n_control_points": len(bundle.problem.control.point),
+    }
 
 
 def regression_row(each: AngleRegression) -> Row:

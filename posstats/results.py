@@ -21,6 +21,7 @@ from posstats.result_rows import (
     angle_error_rows,
     angle_error_summary_rows,
     block_row,
+    bundle_row,
     corrected_parallax_rows,
     error_source_rows,
     frame_rows,
@@ -65,6 +66,7 @@ def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]
             "angle_error_summary": [
                 row for frame in analysis.frames for row in angle_error_summary_rows(frame)
             ],
+            "bundle": None if analysis.bundle is None else bundle_row(analysis.bundle),
             "regression": [
                 regression_row(each) for frame in analysis.frames for each in frame.regressions
             ],

@@ -67,10 +67,11 @@ def cli() -> None:
 )
 @click.option(
     "--errors",
-    type=click.Choice(["coplanarity", "adjusted"]),
+    type=click.Choice(["coplanarity", "bundle", "adjusted"]),
     default="coplanarity",
     show_default=True,
-    help="Angle errors from the tie points, or against adjusted.csv.",
+    help="Angle errors from the tie points, from a bundle adjustment with control points, or "
+    "against adjusted.csv.",
 )
 @click.option(
     "--frame",
@@ -93,7 +94,7 @@ def analyse(
     out: Path | None,
     rules: str,
     scope: Literal["block", "strip"],
-    errors: Literal["coplanarity", "adjusted"],
+    errors: Literal["coplanarity", "bundle", "adjusted"],
     frame: Literal["ground", "camera", "auto"],
     robust: bool,
     calibration: Path | None,

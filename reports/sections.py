@@ -29,6 +29,7 @@ def block_report(
         _parallax(results, drawings),
         _error_sources(results, drawings),
         _angle_errors(results),
+        *_bundle(results),
         _regression(results, drawings),
         _decisions(results),
         _corrected(results, drawings),
@@ -79,6 +80,9 @@ def _angle_errors(results: Results) -> Part:
         "coplanarity": "They are estimated by a least-squares adjustment of the whole block in "
         "which the rays of each pair of images have to lie in one plane; positions are weighted by "
         "their stated accuracy, angles are almost free, and check points take no part.",
+        "bundle": "They are estimated by a bundle adjustment of the whole block; positions are "
+        "weighted by their stated accuracy, control points, where there are any, by theirs, angles "
+        "are almost free, and check points take no part.",
         "adjusted": "They are the differences between the POS and the adjusted orientation given "
         "with the block.",
     }
@@ -98,6 +102,45 @@ def _angle_errors(results: Results) -> Part:
         "angles",
         "Errors of the POS angles",
         (Paragraph(text), *filled([statistics_tables.angle_summary(results)])),
+    )
+
+
+def _bundle(results: Results) -> tuple[Part, ...]:
+    """Nothing, unless the angle errors come from a bundle adjustment."""
+    if not results.get("bundle"):
+        return ()
+    text = (
+        "The rays of every point have to meet in it. Sigma0 compares the residuals of image "
+        "coordinates, positions and control points with their stated accuracies: 1 if these are "
+        "right, and p is the probability of a sigma0 at least as far from 1 by chance. The weak "
+        "priors of the angles do not count. A small p says that a stated accuracy is wrong, or "
+        "that errors are left which the adjustment has no unknowns for, such as a shift of the "
+        "positions against control points. A wrong image accuracy alone does no harm: angle errors "
+        "and their covariance come from a second adjustment with the noise that the residuals "
+        "show."
+    )
+    return (
+        Part(
+            "bundle",
+            "Bundle adjustment",
+            (
+                Paragraph(f"{text} {_gain_of_control(results)}"),
+                *filled([statistics_tables.bundle(results)]),
+            ),
+        ),
+    )
+
+
+def _gain_of_control(results: Results) -> str:
+    n = results["bundle"]["n_control_points"]
+    if not n:
+        return (
+            "The block has no measured control point, so this adjustment leaves open the same "
+            "rotations as the tie points alone."
+        )
+    return (
+        f"{fmt.count(n)} control point{'s fix' if n > 1 else ' helps to fix'} what tie points and "
+        "positions leave open, above all the roll of strips without side overlap."
     )
 
 

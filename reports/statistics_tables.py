@@ -31,6 +31,23 @@ def angle_summary(results: Results) -> Table:
     return Table("angle_error_summary", caption, tuple(columns))
 
 
+def bundle(results: Results) -> Table:
+    """Figures of the bundle adjustment that the angle errors come from."""
+    row = results["bundle"]
+    figures = (
+        ("sigma0", fmt.number(row["sigma0"])),
+        ("degrees of freedom", fmt.count(row["dof"])),
+        ("p of the chi-square test of sigma0", fmt.p_value(row["p_value"])),
+        ("RMS image residual", fmt.with_unit(row["image_rms_px"], "px")),
+        ("noise of an image coordinate, estimated", fmt.with_unit(row["sigma_image_px"], "px")),
+        ("rays", fmt.count(row["n_rays"])),
+        ("rejected rays", fmt.count(row["n_rejected_rays"])),
+        ("control points", fmt.count(row["n_control_points"])),
+    )
+    caption = "Bundle adjustment with the POS positions and nearly free angles."
+    return pairs("bundle", caption, ("Figure", "Value"), figures)
+
+
 def check_points(results: Results, *, translation_removed: bool) -> Table:
     """Check-point differences of every orientation, mean shift removed or kept."""
     stated = rows(results, "check_points", translation_removed=translation_removed)

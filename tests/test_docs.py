@@ -77,7 +77,7 @@ def test_every_key_of_the_results_is_described():
     oriented, ground = scene(1, n_points=20)
     turned = oriented.with_angles(oriented.angles_rad + 1e-5 * np.arange(5)[:, None])
     made = block(turned, ground, is_check=np.arange(20) < 4)
-    analysis = analyse(replace(made, adjusted=oriented), Settings(errors="adjusted", frame="auto"))
+    analysis = analyse(replace(made, adjusted=oriented), Settings(errors="bundle", frame="auto"))
     values = results(analysis)
     packages = set(values.pop("versions"))
     page = (DOCS / "results.md").read_text(encoding="utf-8")

@@ -1,0 +1,312 @@
+"""The bundle block adjustment that angle errors are measured against.
+
+What is looked for is the error of the POS angles, so nothing may draw the solution to them: the
+angles are observed with weak priors only, and no shift, drift or boresight is unknown. Positions
+count with their stated accuracy, tie points with the noise that their residuals show, and ground
+points of role control, where there are any, as surveyed: these fix rotations that tie points and
+positions leave open. Check points take no part.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
+from posstats.block import Block, Orientations
+from posstats.block_tridiagonal import ArrowFactor, factorised
+from posstats.bundle import adjust
+from posstats.bundle_block import bundle_problem
+from posstats.bundle_check_points import intersect_apart
+from posstats.bundle_observations import angles_by_rotation_vector
+from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.bundle_screening import (
+    contradicting_rays,
+    pos_holds,
+    without_control,
+    without_rays,
+)
+from posstats.bundle_system import BundleSystem, State
+from posstats.bundle_tests import GlobalTest, critical_value, local_tests
+from posstats.errors import GeometryError
+from posstats.observability import weak_prior_rad
+
+_Floats = NDArray[np.float64]
+_Bools = NDArray[np.bool_]
+_Ints = NDArray[np.intp]
+_Ids = NDArray[np.object_]
+Progress = Callable[[int, int], object]
+
+ORIENTATION = "bundle"
+MAX_IMAGES = 3000  # the covariance of all their angles: 0.65 GB, and a few copies of it
+_IMAGES_AT_ONCE = 100
+_WEAK_POSITIONS = 100.0  # times the stated standard deviations, to look for blunders
+_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
+_LEAST_REDUNDANCY = 1.0  # of all image coordinates together, to estimate their noise
+_ALPHA = 0.05  # that a block without blunders loses a ray, has a position or a control point named
+_PHASES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ImuFreeBundle:
+    """An adjusted block of n images.
+
+    Attributes
+    ----------
+    problem, adjusted
+        Of the last adjustment: image coordinates weighted by `sigma_px`.
+    overall
+        Test of the stated accuracies of image coordinates, positions and control points.
+    sigma_px
+        Standard deviation of an image coordinate, from the residuals; NaN without redundancy.
+    n_rejected
+        Rays taken out as blunders.
+    contradicted_positions, contradicted_control
+        (q,) ids of images whose POS position, and (g,) of control points, that all others
+        contradict; they stay in.
+    orientations
+        Adjusted, with standard deviations.
+    angle_covariance_rad2
+        (n, 3, n, 3) of omega, phi, kappa of all images.
+    check_points
+        Residuals of the check points, of orientation `ORIENTATION`.
+    """
+
+    problem: BundleProblem
+    adjusted: AdjustedBundle
+    overall: GlobalTest
+    sigma_px: float
+    n_rejected: int
+    contradicted_positions: _Ids
+    contradicted_control: _Ids
+    orientations: Orientations
+    angle_covariance_rad2: _Floats
+    check_points: CheckPointResiduals
+
+    @property
+    def n_points(self) -> _Ints:
+        """(n,) points that tie every image."""
+        kept = ~self.adjusted.rejected
+        n = len(self.adjusted.position_m)
+        return np.bincount(self.problem.image[kept], minlength=n)
+
+    @property
+    def image_rms_px(self) -> float:
+        """Root mean square residual of an image coordinate; NaN without rays."""
+        squares = self.adjusted.residual_px[~self.adjusted.rejected] ** 2
+        return float(np.sqrt(squares.mean())) if squares.size else float("nan")
+
+
+def adjust_imu_free(
+    block: Block, *, robust: bool = True, progress: Progress | None = None
+) -> ImuFreeBundle:
+    """Adjust a block without the help of its POS angles.
+
+    Parameters
+    ----------
+    block
+        Its ground points of role control are used, its check points are not.
+    robust
+        Take out rays that contradict others, then rays beyond chance; else plain least squares.
+    progress
+        Called as progress(done, total).
+
+    Raises
+    ------
+    GeometryError
+        If no rays meet, or the block has more than `MAX_IMAGES` images.
+    ConvergenceError
+        If the adjustment does not settle.
+    """
+    _require_size(len(block.orientations))
+    rays = ~block.check_points[block.tie_points.point]
+    tied = bundle_problem(replace(block, tie_points=block.tie_points.subset(rays)))
+    if len(tied.point) == 0:
+        raise GeometryError("the rays of no point meet in front of the images: check the POS")
+    stated = _with_weak_angles(tied)
+    if robust:
+        stated = without_rays(stated, contradicting_rays(tied, _phase(progress, 0)))
+    first = adjust(stated, progress=_phase(progress, 1))
+    if robust:
+        stated = _from(first, stated)
+        stated = without_rays(stated, _blunders(stated, _phase(progress, 2)))
+        first = adjust(stated, progress=_phase(progress, 2))
+    scale = _image_scale(first)
+    believed = max(scale, _SMALLEST_SCALE) if np.isfinite(scale) else 1.0
+    problem = _from(first, replace(stated, sigma_px=believed * stated.sigma_px))
+    adjusted = adjust(problem, progress=_phase(progress, 3))
+    orientations = _orientations(block, adjusted)
+    return ImuFreeBundle(
+        problem=problem,
+        adjusted=adjusted,
+        overall=_overall(first),
+        sigma_px=scale * block.accuracy.image_px,
+        n_rejected=int(np.isinf(stated.sigma_px).sum()),
+        contradicted_positions=block.orientations.image[_contradicted(problem, adjusted, "gnss")],
+        contradicted_control=block.tie_points.point_id[
+            problem.control.point[_contradicted(problem, adjusted, "control")]
+        ],
+        orientations=orientations,
+        angle_covariance_rad2=_angle_covariance(problem, adjusted),
+        check_points=_check_points(block, problem, adjusted, orientations),
+    )
+
+
+def _require_size(n_images: int) -> None:
+    if n_images > MAX_IMAGES:
+        raise GeometryError(
+            f"angle errors from the bundle adjustment need the covariance of all images, at most"
+            f" {MAX_IMAGES}; the block has {n_images}: divide it, or use an adjusted orientation"
+            " as the source of the errors"
+        )
+
+
+def _phase(progress: Progress | None, number: int) -> Progress | None:
+    """Progress of one of the adjustments as part of all."""
+    if progress is None:
+        return None
+    return lambda done, total: progress(number * total + done, _PHASES * total)
+
+
+def _with_weak_angles(problem: BundleProblem) -> BundleProblem:
+    pos = problem.pos
+    weak = replace(pos, sigma_angles_rad=weak_prior_rad(pos.sigma_angles_rad))
+    return replace(problem, pos=weak)
+
+
+def _from(adjusted: AdjustedBundle, problem: BundleProblem) -> BundleProblem:
+    """The problem with an adjustment's result as start values."""
+    known = np.isfinite(adjusted.ground_m)
+    return replace(
+        problem,
+        ground_from_image=adjusted.ground_from_image,
+        position_m=adjusted.position_m,
+        ground_m=np.where(known, adjusted.ground_m, problem.ground_m),
+    )
+
+
+def _image_scale(adjusted: AdjustedBundle) -> float:
+    """Noise of image coordinates over the stated one; NaN without redundancy."""
+    image = adjusted.groups["image"]
+    if image.redundancy < _LEAST_REDUNDANCY:
+        return float("nan")
+    return float(np.sqrt(image.square_sum / image.redundancy))
+
+
+def _blunders(problem: BundleProblem, progress: Progress | None) -> _Bools:
+    """(m,) rays without weight after those that contradict others beyond chance are taken out.
+
+    Positions are weak and control is left out, so that a wrong one turns no good ray into a bad
+    one. Residuals are judged by the noise that they show together, not by the stated one.
+    """
+    relaxed = _relaxed(problem)
+    adjusted = adjust(relaxed, progress=progress)
+    while (wrong := _worst_of_points(relaxed, adjusted)).any():
+        relaxed = without_rays(_from(adjusted, relaxed), wrong)
+        adjusted = adjust(relaxed, progress=progress)
+    blunders: _Bools = np.isinf(relaxed.sigma_px)
+    return blunders
+
+
+def _relaxed(problem: BundleProblem) -> BundleProblem:
+    pos = problem.pos
+    weak = replace(pos, sigma_antenna_m=_WEAK_POSITIONS * pos.sigma_antenna_m)
+    relaxed = replace(problem, pos=weak)
+    return without_control(relaxed) if pos_holds(problem) else relaxed
+
+
+def _worst_of_points(problem: BundleProblem, adjusted: AdjustedBundle) -> _Bools:
+    """(m,) the worst ray of every point, if it is beyond the critical value."""
+    w = _largest(local_tests(problem, adjusted)["image"].w)
+    worst = np.zeros(len(problem.ground_m))
+    np.maximum.at(worst, problem.point, w)
+    n_tested = 2 * max(int(np.isfinite(problem.sigma_px).sum()), 1)
+    scale = max(_image_scale(adjusted), _SMALLEST_SCALE)
+    beyond: _Bools = w > critical_value(_ALPHA / n_tested) * scale
+    beyond &= w == worst[problem.point]
+    return beyond
+
+
+def _largest(w: _Floats) -> _Floats:
+    """(k,) largest absolute value of rows (k, q), 0 where none is known."""
+    largest: _Floats = np.nan_to_num(np.abs(w)).max(axis=1, initial=0.0)
+    return largest
+
+
+def _overall(adjusted: AdjustedBundle) -> GlobalTest:
+    """Chi-square test of v'Pv of what was measured: the priors of the angles do not count."""
+    measured = [adjusted.groups[name] for name in ("image", "gnss", "control")]
+    square_sum = sum(group.square_sum for group in measured)
+    dof = round(sum(group.redundancy for group in measured))
+    if dof <= 0:
+        return GlobalTest(float("nan"), dof, float("nan"))
+    tail = min(stats.chi2.cdf(square_sum, dof), stats.chi2.sf(square_sum, dof))
+    return GlobalTest(float(np.sqrt(square_sum / dof)), dof, 2.0 * float(tail))
+
+
+def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle, kind: str) -> _Ints:
+    """Rows of the antenna positions or the control beyond the critical value."""
+    w = local_tests(problem, adjusted)[kind].w
+    return np.flatnonzero(_largest(w) > critical_value(_ALPHA / max(w.size, 1)))
+
+
+def _orientations(block: Block, adjusted: AdjustedBundle) -> Orientations:
+    sigma = np.sqrt(np.diagonal(adjusted.orientation_covariance, axis1=1, axis2=2))
+    return replace(
+        block.orientations,
+        position_m=adjusted.position_m,
+        angles_rad=adjusted.angles_rad,
+        sigma_position_m=sigma[:, 3:],
+        sigma_angles_rad=sigma[:, :3],
+    )
+
+
+def _angle_covariance(problem: BundleProblem, adjusted: AdjustedBundle) -> _Floats:
+    """(n, 3, n, 3) of the angles of all images.
+
+    The selected inverse of the adjustment ends at images with a common point, so columns of the
+    inverse are solved for, those of some images at a time.
+    """
+    factor = _factor(problem, adjusted)
+    by_vector = angles_by_rotation_vector(adjusted.angles_rad, adjusted.system)
+    n = len(by_vector)
+    covariance = np.empty((n, 3, n, 3))
+    for start in range(0, n, _IMAGES_AT_ONCE):
+        some = np.arange(start, min(start + _IMAGES_AT_ONCE, n))
+        right = np.zeros((n, 6, len(some), 3))
+        right[some, :3, np.arange(len(some))] = np.swapaxes(by_vector[some], 1, 2)
+        solved, _ = factor.solve(right.reshape(n, 6, -1), np.zeros((0, 3 * len(some))))
+        columns = by_vector @ solved[:, :3]
+        covariance[:, :, some] = columns.reshape(n, 3, len(some), 3)
+    return 0.5 * (covariance + covariance.transpose(2, 3, 0, 1))
+
+
+def _factor(problem: BundleProblem, adjusted: AdjustedBundle) -> ArrowFactor:
+    """Of the normal equations at the solution, of the rays that took part."""
+    kept = ~adjusted.rejected
+    system = BundleSystem.of(
+        replace(
+            problem,
+            point=problem.point[kept],
+            image=problem.image[kept],
+            xy_px=problem.xy_px[kept],
+            sigma_px=problem.sigma_px[kept],
+        )
+    )
+    state = State(
+        adjusted.ground_from_image,
+        adjusted.position_m,
+        adjusted.ground_m[system.rays.point],
+        adjusted.common,
+    )
+    return factorised(system.equations(state).matrix, system.levels)
+
+
+def _check_points(
+    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, orientations: Orientations
+) -> CheckPointResiduals:
+    given, points = surveyed_check_points(block)
+    computed, covariance = intersect_apart(block, problem, adjusted, orientations, points)
+    return differences(block, ORIENTATION, given, computed, covariance)
