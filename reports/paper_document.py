@@ -68,8 +68,9 @@ def _verdict(run: Reproduction, found: Sequence[Conclusion]) -> str:
     return (
         "The photographs of the paper (section 2) are not public, so its three test areas are "
         "simulated with known errors and analysed by the same chain as any block. "
-        f"{held} of the paper's {len(found)} conclusions hold{except_for}. The mean parallax from the POS is fitted: it "
-        f"comes out at {means} of the published one. Regression, error sources, effect of the "
+        f"{held} of the paper's {len(found)} conclusions hold{except_for}. The mean parallax from "
+        f"the POS is fitted: it comes out at {means} of the published one. Regression, error "
+        "sources, effect of the "
         "correction and check points are predicted, and stand beside the published numbers below. "
         f"This is the run of seed {run.seed}; how often each finding comes out over {n_seeds} "
         "seeds is in section 8, where our analysis differs from the paper's in section 10."
