@@ -156,7 +156,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
     Give either a scenario or the number of a test area.
 
     \b
-    Examples:
+    Example:
       posstats simulate --area 1 --out block
       posstats simulate --scenario area1-small --out block --seed 7
     """
