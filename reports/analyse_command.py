@@ -16,7 +16,10 @@ from .timestamp import now
 
 def analyse_block(folder: Path, out: Path, settings: Settings, *, pdf: bool) -> Iterator[str]:
     """Analyse a block folder into `out`; yields the lines of the terminal summary."""
-    with staged_folder(out) as stage, progress_bar("reading the block") as progress:
+    with (
+        staged_folder(out, replaced=("report.pdf",)) as stage,
+        progress_bar("reading the block") as progress,
+    ):
         block = read_block(folder)
         analysis = analyse(block, settings, progress=lambda step, done: progress(step, 0.7 * done))
         values = write_analysis(analysis, stage, created=now())

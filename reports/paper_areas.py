@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.errors import PosstatsError
-from posstats.experiment.areas import AREAS, run_area
+from posstats.experiment.areas import AREAS, TrueCauses, run_area, true_causes
 
 from . import paper_figures
 from .analysis_folder import write_analysis
@@ -23,9 +23,10 @@ _PROCESSES = 2  # the two large areas take nearly all the time
 
 @dataclass(frozen=True, eq=False)
 class AreaOutput:
-    """Results dictionary of an area, and its Figures 1, 2 and 3."""
+    """Results dictionary of an area, what its errors make alone, and its Figures 1, 2 and 3."""
 
     results: dict[str, Any]
+    causes: TrueCauses
     figures: tuple[Drawing, ...]
 
 
@@ -39,7 +40,7 @@ def run_areas(folder: Path, seed: int, created: str) -> Mapping[int, AreaOutput]
     """
     # Forked, so that the libraries are loaded once; before the progress bar starts its thread.
     context = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(_PROCESSES, context, _leave_interrupts_to_parent) as pool:
+    with ProcessPoolExecutor(_PROCESSES, context, _obey_parent) as pool:
         futures = {
             pool.submit(_area, area, seed, folder / f"area{area}", created): area for area in AREAS
         }
@@ -50,14 +51,19 @@ def run_areas(folder: Path, seed: int, created: str) -> Mapping[int, AreaOutput]
             raise PosstatsError(
                 "the process of a test area was killed: is there less than 2 GB of memory?"
             ) from error
-        finally:
-            pool.shutdown(cancel_futures=True)
+        except BaseException:  # such as Ctrl-C: nobody waits for areas that are still running
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
 
 
 def _area(area: int, seed: int, folder: Path, created: str) -> AreaOutput:
-    values = write_analysis(run_area(area, seed), folder, created=created)
+    analysis = run_area(area, seed)
+    values = write_analysis(analysis, folder, created=created)
+    causes = true_causes(analysis.block)
+    del analysis  # the largest thing in memory, while pages and figures are made
     write_report(values, folder, pdf=False)
-    return AreaOutput(values, paper_figures.draw_area(area, values))
+    return AreaOutput(values, causes, paper_figures.draw_area(area, values))
 
 
 def _show_progress(futures: Mapping[Future[AreaOutput], int]) -> None:
@@ -66,5 +72,7 @@ def _show_progress(futures: Mapping[Future[AreaOutput], int]) -> None:
             progress(f"area {futures[future]} analysed", 0.8 * done / len(futures))
 
 
-def _leave_interrupts_to_parent() -> None:
+def _obey_parent() -> None:
+    """Leave Ctrl-C to the parent, and end at once when it says so."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -243,7 +243,7 @@ def test_r_squared_is_never_rounded_to_nothing_or_to_certainty(results):
 
 def test_captions_say_simulated_name_the_area_and_give_the_shares(results, drawn):
     for drawing in drawn:
-        assert drawing.caption.startswith("Simulated area 1: ")
+        assert drawing.caption.startswith("Simulated area 1, predicted: ")
         assert drawing.caption.endswith(".")
         assert drawing.title.startswith("Simulated area 1: ")
     held = [np.mean(means(results, "error_sources", fixed=name)) for name in HELD]
