@@ -251,7 +251,7 @@ def killed(*_):
 
 
 def test_a_killed_area_is_an_error_that_says_so(monkeypatch, tmp_path):
-    monkeypatch.setattr(paper_areas, "_area", killed)
+    monkeypatch.setattr(paper_areas, "_analysed", killed)
     with pytest.raises(PosstatsError, match="killed"):
         paper_areas.run_areas(tmp_path, 1, "")
 
