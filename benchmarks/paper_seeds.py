@@ -14,9 +14,10 @@ from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from posstats.experiment.areas import AREAS, area_results, area_scenario
+from posstats.experiment.areas import AREAS, area_scenario, run_area, true_causes
 from posstats.experiment.findings import CRITERIA, AreaFindings, find
 from posstats.experiment.seeds import write
+from posstats.results import results
 
 STORED = Path(__file__).parents[1] / "posstats" / "experiment" / "seeds.csv"
 
@@ -41,7 +42,8 @@ def main() -> None:
 
 def _find(run: tuple[int, int]) -> AreaFindings:
     seed, area = run
-    return find(area, area_results(area, seed), area_scenario(area))
+    analysis = run_area(area, seed)
+    return find(area, results(analysis), area_scenario(area), true_causes(analysis.block))
 
 
 def _failed(found: AreaFindings) -> str:

@@ -19,7 +19,10 @@ def analyse_block(
     folder: Path, out: Path, settings: Settings, calibration: Path | None, *, pdf: bool
 ) -> Iterator[str]:
     """Analyse a block folder into `out`; yields the lines of the terminal summary."""
-    with staged_folder(out) as stage, progress_bar("reading the block") as progress:
+    with (
+        staged_folder(out, replaced=("report.pdf",)) as stage,
+        progress_bar("reading the block") as progress,
+    ):
         block = read_block(folder)
         if calibration is not None:
             block = calibrated(block, calibration)

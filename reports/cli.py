@@ -14,7 +14,17 @@ import click
 from posstats import __version__
 from posstats.errors import PosstatsError
 
-FOLDER = click.Path(path_type=Path)
+
+class _Folder(click.Path):
+    """A path that is not empty: an empty one would be the working directory."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if value == "":
+            self.fail("is empty; . is the working directory", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+FOLDER = _Folder(path_type=Path)
 
 
 def _clear_errors(command: Callable[..., None]) -> Callable[..., None]:
@@ -306,7 +316,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
     Give either a scenario or the number of a test area.
 
     \b
-    Examples:
+    Example:
       posstats simulate --area 1 --out block
       posstats simulate --scenario area1-small --out block --seed 7
     """
@@ -319,7 +329,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
     elif area is not None and scenario is None:
         chosen = shipped_scenario(f"area{area}")
     else:
-        raise click.UsageError("give either --scenario or --area")
+        raise click.UsageError("give exactly one of --scenario and --area")
     for line in simulate_block(chosen, out, seed):
         click.echo(line)
 

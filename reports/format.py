@@ -59,6 +59,11 @@ def as_printed(value: float) -> str:
     return f"{mantissa}\u00a0×\u00a0{power_of_ten(int(power.replace(MINUS, '-')))}"
 
 
+def as_chosen(value: float) -> str:
+    """A number that somebody chose, without digits that nobody chose: ``18``, ``0.25``."""
+    return f"{value:.10g}".replace("-", MINUS)
+
+
 def number(value: float | None, digits: int = 3) -> str:
     """A number with `digits` significant digits, in powers of ten where zeros would not be read."""
     if value is None or not math.isfinite(value):

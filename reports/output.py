@@ -2,7 +2,7 @@
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,10 +10,11 @@ from posstats.errors import PosstatsError
 
 
 @contextmanager
-def staged_folder(target: Path) -> Iterator[Path]:
+def staged_folder(target: Path, replaced: Sequence[str] = ()) -> Iterator[Path]:
     """A temporary folder beside or in `target`, whose files are moved there on success.
 
-    Files of the same names are replaced, others are left alone. When the body fails or is
+    Files of the same names are replaced, those named in `replaced` (of an earlier run) are removed
+    if they are not written again, others are left alone. When the body fails or is
     interrupted nothing of it remains, and `target` is as it was.
 
     Raises
@@ -21,8 +22,6 @@ def staged_folder(target: Path) -> Iterator[Path]:
     PosstatsError
         If the target is a file, or cannot be written.
     """
-    if target.exists() and not target.is_dir():
-        raise PosstatsError(f"{target} is a file, not a folder to write into")
     existing = _nearest_existing(target)
     try:
         stage = Path(tempfile.mkdtemp(prefix=".posstats-", dir=existing))
@@ -30,17 +29,22 @@ def staged_folder(target: Path) -> Iterator[Path]:
         raise PosstatsError(f"cannot write into {existing}: {error.strerror}") from error
     try:
         yield stage
+        written = {path.name for path in stage.iterdir()}
         _move_files(stage, target)
+        for name in set(replaced) - written:
+            (target / name).unlink(missing_ok=True)
     finally:
         shutil.rmtree(stage, ignore_errors=True)
 
 
 def _nearest_existing(folder: Path) -> Path:
     """The folder itself or its first existing ancestor: the same file system as the target."""
-    folder = folder.absolute()
-    while not folder.is_dir():
-        folder = folder.parent
-    return folder
+    for existing in (folder.absolute(), *folder.absolute().parents):
+        if existing.is_dir():
+            return existing
+        if existing.exists():
+            raise PosstatsError(f"{existing} is a file, not a folder to write into")
+    raise PosstatsError(f"{folder} has no folder above it that exists")
 
 
 def _move_files(stage: Path, target: Path) -> None:

@@ -2,7 +2,7 @@
 
 import multiprocessing
 import signal
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.errors import PosstatsError
-from posstats.experiment.areas import AREAS, run_area
+from posstats.experiment.areas import AREAS, TrueCauses, run_area, true_causes
 
 from . import paper_figures
 from .analysis_folder import write_analysis
@@ -18,14 +18,17 @@ from .figure_style import Drawing
 from .progress import progress_bar
 from .report import write_report
 
+_Numbers = tuple[dict[str, Any], TrueCauses]
+
 _PROCESSES = 2  # the two large areas take nearly all the time
 
 
 @dataclass(frozen=True, eq=False)
 class AreaOutput:
-    """Results dictionary of an area, and its Figures 1, 2 and 3."""
+    """Results dictionary of an area, what its errors make alone, and its Figures 1, 2 and 3."""
 
     results: dict[str, Any]
+    causes: TrueCauses
     figures: tuple[Drawing, ...]
 
 
@@ -39,32 +42,52 @@ def run_areas(folder: Path, seed: int, created: str) -> Mapping[int, AreaOutput]
     """
     # Forked, so that the libraries are loaded once; before the progress bar starts its thread.
     context = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(_PROCESSES, context, _leave_interrupts_to_parent) as pool:
-        futures = {
-            pool.submit(_area, area, seed, folder / f"area{area}", created): area for area in AREAS
+    with ProcessPoolExecutor(_PROCESSES, context, _obey_parent) as pool:
+        analysed = {
+            pool.submit(_analysed, area, seed, folder / f"area{area}", created): area
+            for area in AREAS
         }
         try:
-            _show_progress(futures)
-            return {area: future.result() for future, area in futures.items()}
+            with progress_bar("three test areas") as progress:
+                return _reported(pool, analysed, folder, progress)
         except BrokenProcessPool as error:
             raise PosstatsError(
                 "the process of a test area was killed: is there less than 2 GB of memory?"
             ) from error
-        finally:
-            pool.shutdown(cancel_futures=True)
+        except BaseException:  # such as Ctrl-C: nobody waits for areas that are still running
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
 
 
-def _area(area: int, seed: int, folder: Path, created: str) -> AreaOutput:
-    values = write_analysis(run_area(area, seed), folder, created=created)
+def _reported(
+    pool: ProcessPoolExecutor,
+    analysed: Mapping[Future[_Numbers], int],
+    folder: Path,
+    progress: Callable[[str, float], None],
+) -> Mapping[int, AreaOutput]:
+    """Have each area's files written as soon as it is analysed, by whichever process is free."""
+    numbers: dict[int, _Numbers] = {}
+    drawn: dict[int, Future[tuple[Drawing, ...]]] = {}
+    for done, future in enumerate(as_completed(analysed), start=1):
+        area = analysed[future]
+        numbers[area] = future.result()
+        drawn[area] = pool.submit(_written, area, numbers[area][0], folder / f"area{area}")
+        progress(f"area {area} analysed", 0.7 * done / len(analysed))
+    return {area: AreaOutput(*numbers[area], drawn[area].result()) for area in AREAS}
+
+
+def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
+    analysis = run_area(area, seed)
+    return write_analysis(analysis, folder, created=created), true_causes(analysis.block)
+
+
+def _written(area: int, values: dict[str, Any], folder: Path) -> tuple[Drawing, ...]:
     write_report(values, folder, pdf=False)
-    return AreaOutput(values, paper_figures.draw_area(area, values))
+    return paper_figures.draw_area(area, values)
 
 
-def _show_progress(futures: Mapping[Future[AreaOutput], int]) -> None:
-    with progress_bar("three test areas") as progress:
-        for done, future in enumerate(as_completed(futures), start=1):
-            progress(f"area {futures[future]} analysed", 0.8 * done / len(futures))
-
-
-def _leave_interrupts_to_parent() -> None:
+def _obey_parent() -> None:
+    """Leave Ctrl-C to the parent, and end at once when it says so."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -33,8 +33,9 @@ def _error_sources(area: int, results: Results) -> style.Drawing:
     figure = bar_figure(bars, strips_with_models(results), "mm")
     every, omega, phi, kappa, none = bars
     caption = (
-        f"Simulated area {area}: mean RMS vertical parallax by strip, logarithmic, after relative "
-        "orientation with POS angles of the right image held. Grey: what none held leaves. "
+        f"Simulated area {area}, predicted: mean RMS vertical parallax by strip, logarithmic, "
+        "after relative orientation with POS angles of the right image held. Grey: what none held "
+        "leaves. "
         f"Holding omega alone leaves {_percent(omega, every)} of the parallax with all three "
         f"angles held; holding phi or kappa alone leaves {_percent(phi, none)} and "
         f"{_percent(kappa, none)} of that with none held."
@@ -48,8 +49,8 @@ def _corrected(area: int, results: Results) -> style.Drawing:
     figure = bar_figure(bars, strips_with_models(results), "mm")
     pos, omega, phi, kappa, relative = bars
     caption = (
-        f"Simulated area {area}: mean RMS vertical parallax by strip, logarithmic, from the POS, "
-        "with the line of one angle taken off, and after relative orientation (grey). "
+        f"Simulated area {area}, predicted: mean RMS vertical parallax by strip, logarithmic, from "
+        "the POS, with the line of one angle taken off, and after relative orientation (grey). "
         f"Correcting omega leaves {_percent(omega, pos)} of the parallax of the POS, "
         f"{_percent(omega, relative)} of that of relative orientation; correcting phi leaves "
         f"{_percent(phi, pos)} of that of the POS, and correcting kappa {_percent(kappa, pos)}."
@@ -76,9 +77,9 @@ def _regression(area: int, results: Results) -> style.Drawing:
     handles, labels = legend_entries(panels[0])
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     caption = (
-        f"Simulated area {area}: errors of the POS angles (POS minus estimated, ground frame) over "
-        "time, with line and 95 % band of the block by ordinary (OLS) and generalised least "
-        f"squares (GLS). {_drifts(results)} The unit differs between panels."
+        f"Simulated area {area}, predicted: errors of the POS angles (POS minus estimated, ground "
+        "frame) over time, with line and 95 % band of the block by ordinary (OLS) and generalised "
+        f"least squares (GLS). {_drifts(results)} The unit differs between panels."
     )
     title = f"Simulated area {area}: errors of omega, phi and kappa over time"
     return style.finish(figure, f"area{area}_regression", title, caption)

@@ -1,11 +1,12 @@
 """Tables of the paper's reproduction: printed and simulated numbers side by side."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from posstats.experiment.comparison import Compared
+from posstats.experiment.comparison import TABLE3_AREA, Compared
 from posstats.experiment.published import recomputed
 from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated, share
+from posstats.experiment.seeds import repeated, share, share_interval
 from posstats.synthetic import Scenario
 
 from . import format as fmt
@@ -27,7 +28,7 @@ CRITERIA = {
     "omega_alone_is_chosen": "the rules choose omega alone",
     "only_omega_helps": "only the omega correction reduces the parallax",
     "check_points_improve": "check points improve, H and V",
-    "more_than_relative_is_left": "the correction leaves more than relative orientation",
+    "gains_as_published": "gain at check points in the ranges of the paper's text",
 }
 _TABLE1 = {
     "principal_distance_mm": ("principal distance, mm", 1),
@@ -72,18 +73,26 @@ def simulated_errors(scenarios: dict[int, Scenario]) -> Table:
         ("tie points: image noise, px", lambda s: s.errors.image_px),
         ("check points: image noise, px", lambda s: s.check_points.image_px),
         ("check points: survey error, m", lambda s: s.check_points.ground_m),
+        ("flight: speed, m/s", lambda s: s.flight.speed_m_per_s),
+        ("flight: turn between strips, s", lambda s: s.flight.turn_s),
+        ("flight: tilts about level, mrad", lambda s: 1e3 * s.flight.tilt_rad),
+        ("terrain: relief, m", lambda s: s.terrain.relief_m),
     )
-    columns = [text_column("Error (standard deviation of noise)", [title for title, _ in lines])]
+    columns = [text_column("Quantity", [title for title, _ in lines])]
     for area, scenario in scenarios.items():
-        values = [value(scenario) for _, value in lines]
-        columns.append(number_column(f"Area {area}", "", values, 3))
+        cells = tuple(fmt.as_chosen(value(scenario)) for _, value in lines)
+        columns.append(Column(f"Area {area}", cells))
     caption = (
-        "Fitted: the errors that the simulation adds to the truth, chosen so that the mean "
-        "parallaxes of Table 2 come out near the published ones. Everything else in this report "
-        "follows from them."
+        "Chosen: the errors that the simulation adds to the truth (noise as standard deviation), "
+        "and what else of the flight the paper does not tell."
     )
-    notes = ("Drift from the first exposure of the area on. phi and kappa have neither constant "
-             "nor drift.",)  # fmt: skip
+    notes = (
+        "Drift from the first exposure of the area on; phi and kappa have neither constant nor "
+        "drift. Fitted to the mean parallaxes of Table 2: constant and drift of omega (in area 1 "
+        "the published drift) and the image noise of tie points. The noise of omega in area 1 is "
+        "what the published R² implies for this drift; the noise of phi (roll) was kept small, as "
+        "more of it would spoil Figure 3. The noise of check points was chosen by hand.",
+    )
     return Table("simulated_errors", caption, tuple(columns), notes)
 
 
@@ -107,7 +116,8 @@ def parallax(run: Reproduction, method: str) -> Table:
     notes = ("all: mean over all models of the area. Means are fitted, maxima and minima "
              "predicted.",)  # fmt: skip
     whole = frozenset(k for k, (_, strip) in enumerate(places) if strip is None)
-    return Table(f"parallax_{method}", caption, tuple(columns), notes, whole)
+    by_area = tuple(Counter(area for area, _ in places).values())
+    return Table(f"parallax_{method}", caption, tuple(columns), notes, whole, by_area)
 
 
 def _side_by_side(
@@ -171,10 +181,10 @@ def one_strip(run: Reproduction) -> Table:
         "Simulated: t in seconds from the middle of the strip. The paper names neither the unit of "
         "angle nor unit and origin of time, so lines have no ratio.",
         "F₀ has 1 and 58 degrees of freedom. Null hypothesis of p: the error does not change with "
-        "time, errors of different images being independent. All numbers of this table are "
-        "predicted, but for the drift of omega, which is the published one.",
+        "time, errors of different images being independent. Predicted, but for omega: its drift "
+        "is the published one, and its noise is what the published R² implies for that drift.",
     )
-    return Table("one_strip", caption, columns, notes)
+    return Table("one_strip", caption, columns, notes, together=(len(SOURCES),) * len(angles))
 
 
 def _equation(source: str, found: dict[str, Compared]) -> str:
@@ -185,7 +195,7 @@ def _equation(source: str, found: dict[str, Compared]) -> str:
         return f"{fmt.as_printed(intercept.published)} + {fmt.as_printed(slope.published)} t"
     if intercept.reproduced is None or slope.reproduced is None:
         return fmt.MISSING
-    unit, rate = fmt.MICRORADIAN, fmt.NANORADIAN_PER_SECOND
+    unit, rate = fmt.angle_unit([intercept.reproduced]), fmt.NANORADIAN_PER_SECOND
     constant = fmt.with_unit(unit.scaled(intercept.reproduced), unit.name)
     return f"{constant} + {fmt.with_unit(rate.scaled(slope.reproduced), rate.name)} t"
 
@@ -194,6 +204,10 @@ def _cell(source: str, each: Compared, shown: Callable[[float | None], str]) -> 
     if source == "ratio":
         return fmt.fixed(each.ratio, 2)
     return shown(each.published if source == "published" else each.reproduced)
+
+
+def _r_squared(value: float) -> str:
+    return "< 0.0001" if value < 1e-4 else fmt.fixed(value, 4)
 
 
 def _statistic(value: float | None) -> str:
@@ -216,7 +230,7 @@ def lines(run: Reproduction) -> Table:
         count_column("n", [row["n"] for _, row in made]),
         number_column("a₀", unit.name, [unit.scaled(row["intercept_rad"]) for _, row in made]),
         number_column("a₁", rate.name, [rate.scaled(row["slope_rad_per_s"]) for _, row in made]),
-        Column("R²", tuple(fmt.fixed(row["r_squared"], 4) for _, row in made)),
+        Column("R²", tuple(_r_squared(row["r_squared"]) for _, row in made)),
         Column("F₀", tuple(_statistic(row["f_statistic"]) for _, row in made)),
         p_column("p", [row["p_value"] for _, row in made]),
         p_column("GLS p", [row["gls_p_value"] for _, row in made]),
@@ -245,7 +259,7 @@ def corrected(run: Reproduction) -> Table:
         ),
         _millimetres("relative orientation", [each.independent_mm for each in found]),
         Column(
-            "omega corrected ÷ relative",
+            "omega ÷ relative",
             tuple(fmt.fixed(e.corrected_omega_mm / e.independent_mm, 2) for e in found),
         ),
     ]  # fmt: skip
@@ -282,10 +296,13 @@ def check_points(run: Reproduction) -> Table:
         "line taken off: published, simulated, and simulated over published. H: horizontal; V: "
         "vertical (absolute values)."
     )
-    notes = ("All of it is predicted: neither the size nor the direction of the ground errors was "
-             "fitted.",)  # fmt: skip
+    notes = (
+        "Predicted: the error of omega follows from Table 2. The noise of check points was chosen "
+        "by hand; with that of area 1, area 2 would often not improve vertically.",
+    )
     ratios = frozenset(k for k, (*_, source) in enumerate(listed) if source == "ratio")
-    return Table("check_points", caption, tuple(columns), notes, ratios)
+    triples = (len(SOURCES),) * len(places)
+    return Table("check_points", caption, tuple(columns), notes, ratios, triples)
 
 
 def _metres(source: str, each: Compared) -> str:
@@ -308,10 +325,22 @@ def shares(run: Reproduction) -> Table:
         "different seeds of the random numbers."
     )
     notes = (
-        "Made by benchmarks/paper_seeds.py and stored with the package; noticeable: by 10 % or "
-        f"more. {fmt.MISSING}: the paper's Table 3 is about area 1.",
+        f"What a finding means is told with the conclusions (Table B). {_interval_note()} "
+        f"{fmt.MISSING}: the paper's Table 3 is about area 1. Stored with the package, made by "
+        "benchmarks/paper_seeds.py of its sources.",
     )
     return Table("shares", caption, tuple(columns), notes)
+
+
+def _interval_note() -> str:
+    """What shares of a hundred seeds can tell."""
+    low, high = share_interval("only_omega_is_linear", TABLE3_AREA)
+    sure = share_interval("angles_dominate", TABLE3_AREA)[0]
+    return (
+        f"95 % interval of a share of 100 %: from {fmt.fixed(100.0 * sure, 0)} %; of "
+        f"{fmt.fixed(100.0 * share('only_omega_is_linear', TABLE3_AREA), 0)} %: "
+        f"{fmt.fixed(100.0 * low, 0)} to {fmt.fixed(100.0 * high, 0)} %."
+    )
 
 
 def printed_regression(df_resid: int) -> Table:

@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
@@ -60,7 +61,8 @@ class Table:
     """A table that can be read alone.
 
     `name` is an identifier, `caption` says what is shown and how it was computed, `notes` explain
-    signs and missing values, `strong` are the indices of rows that sum up the others.
+    signs and missing values, `strong` are the indices of rows that sum up the others, `together`
+    says how many rows each may not be parted by the end of a page (as it comes where empty).
     """
 
     name: str
@@ -68,11 +70,19 @@ class Table:
     columns: tuple[Column, ...]
     notes: tuple[str, ...] = ()
     strong: frozenset[int] = frozenset()
+    together: tuple[int, ...] = ()
 
     @property
     def rows(self) -> tuple[tuple[str, ...], ...]:
         """Cells by row."""
         return tuple(zip(*(column.cells for column in self.columns), strict=True))
+
+    @property
+    def bodies(self) -> tuple[tuple[tuple[int, tuple[str, ...]], ...], ...]:
+        """Rows with their indices, in groups that stay on one page."""
+        numbered = iter(enumerate(self.rows))
+        lengths = self.together or (len(self.rows),)
+        return tuple(tuple(islice(numbered, length)) for length in lengths)
 
     @property
     def is_short(self) -> bool:

@@ -1,10 +1,11 @@
 """The paper's three test areas, simulated and analysed like any block."""
 
-from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass, replace
 
 from posstats.analysis import Analysis, Progress, Settings, analyse
-from posstats.results import results
+from posstats.block import Block, Orientations
+from posstats.parallax import block_statistics, model_rms_px
+from posstats.stereo import stereo_models
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 
 AREAS = (1, 2, 3)
@@ -40,8 +41,40 @@ def run_area(area: int, seed: int = DEFAULT_SEED, *, progress: Progress | None =
     return analyse(block, Settings(rules="paper"), progress=progress)
 
 
-def area_results(
-    area: int, seed: int = DEFAULT_SEED, *, created: str | None = None
-) -> Mapping[str, Any]:
-    """The results dictionary of `run_area`."""
-    return results(run_area(area, seed), created=created)
+@dataclass(frozen=True)
+class TrueCauses:
+    """Mean RMS y-parallax, mm, that errors of the POS make alone: the truth in all else.
+
+    Attributes
+    ----------
+    angles_mm
+        POS angles at true positions.
+    positions_mm
+        POS positions with true angles.
+    """
+
+    angles_mm: float
+    positions_mm: float
+
+
+def true_causes(block: Block) -> TrueCauses:
+    """What only a simulation can tell: which error of the POS makes the parallax.
+
+    Parameters
+    ----------
+    block
+        Simulated; its adjusted orientations are the truth.
+    """
+    pos, truth = block.orientations, block.adjusted
+    if truth is None:
+        raise ValueError("only a simulated block knows its true orientations")
+    models = stereo_models(block)
+
+    def mean_mm(orientations: Orientations) -> float:
+        rms_px = model_rms_px(models.with_orientations(orientations))
+        return block_statistics(models, rms_px).mean_mm
+
+    return TrueCauses(
+        angles_mm=mean_mm(replace(truth, angles_rad=pos.angles_rad)),
+        positions_mm=mean_mm(replace(truth, position_m=pos.position_m)),
+    )

@@ -13,6 +13,9 @@ from scipy.special import fdtrc
 Row = dict[str, Any]
 TableNumber = Literal[1, 2, 3, 4]
 
+STRIP_RESIDUAL_DF = 58
+"""Of Table 3: the only number for which its R2, F0 and p agree (`consistent_residual_df`)."""
+
 
 def published(table: TableNumber, **conditions: object) -> list[Row]:
     """Rows of a printed table whose values equal the conditions, e.g. ``published(2, area=1)``.
@@ -77,6 +80,62 @@ def _agree(rows: Iterable[PrintedRegression]) -> bool:
 def _cut(value: float, decimals: int) -> float:
     """The value without the decimals that were not printed."""
     return math.floor(value * 10.0**decimals) / 10.0**decimals
+
+
+def implied_scatter(angle: str, time_spread: float) -> float:
+    """Standard deviation about a printed line that its slope and R2 imply, in its unit.
+
+    From eq. 3, with s_t the standard deviation of the times: slope s_t sqrt((1 - R2) / R2). R2 is
+    taken from F0, of which more digits are printed.
+    """
+    (row,) = published(3, angle=angle)
+    r_squared = row["f_statistic"] / (row["f_statistic"] + STRIP_RESIDUAL_DF)
+    return float(abs(row["slope_per_t"]) * time_spread * math.sqrt((1.0 - r_squared) / r_squared))
+
+
+def printed_gain(area: int) -> tuple[float, float]:
+    """RMSE before over after of Table 4, minus 1, horizontal and vertical."""
+    (before,), (after,) = (
+        published(4, area=area, orientation=name) for name in ("pos", "omega_corrected")
+    )
+    horizontal, vertical = (
+        before[f"rmse_{side}_m"] / after[f"rmse_{side}_m"] - 1.0
+        for side in ("horizontal", "vertical")
+    )
+    return horizontal, vertical
+
+
+def least_zero_mean_rmse(n: int, smallest: float, largest: float) -> float:
+    """Least RMS of n numbers of mean zero whose magnitudes go from `smallest` to `largest`.
+
+    One number is `largest`; the others are `smallest`, but those of the sign whose sum is too
+    small, which share what is missing evenly. Table 4's residuals must not be below it.
+    """
+    return min(_rms_of_signs(n, k, smallest, largest) for k in range(1, n))
+
+
+def _rms_of_signs(n: int, k: int, smallest: float, largest: float) -> float:
+    """The same with k numbers of the sign of the largest; infinite where they cannot balance."""
+    own, other = largest + (k - 1) * smallest, (n - k) * smallest
+    if own >= other:
+        shared = own / (n - k)
+        squares = largest**2 + (k - 1) * smallest**2 + (n - k) * shared**2
+        return math.sqrt(squares / n) if shared <= largest else math.inf
+    if k == 1:
+        return math.inf
+    shared = (other - largest) / (k - 1)
+    squares = largest**2 + (k - 1) * shared**2 + (n - k) * smallest**2
+    return math.sqrt(squares / n) if shared <= largest else math.inf
+
+
+def impossible_vertical_rmse() -> list[tuple[Row, float]]:
+    """Rows of Table 4 whose vertical RMSE is below what a removed mean allows, with that, m."""
+    least = [
+        least_zero_mean_rmse(row["n_check_points"], row["min_vertical_m"], row["max_vertical_m"])
+        for row in published(4)
+    ]
+    pairs = zip(published(4), least, strict=True)
+    return [(row, bound) for row, bound in pairs if row["rmse_vertical_m"] < bound]
 
 
 @lru_cache(maxsize=1)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from posstats.experiment.areas import area_scenario
+from posstats.experiment.areas import TrueCauses, area_scenario
 from posstats.experiment.comparison import Compared, compare
 from posstats.experiment.findings import AreaFindings, find
 
@@ -31,7 +31,19 @@ class Reproduction:
     compared: tuple[Compared, ...]
 
 
-def reproduction(results: Mapping[int, Results], seed: int) -> Reproduction:
-    """Compare the results dictionaries of the three areas, by area, with the printed numbers."""
-    findings = {area: find(area, each, area_scenario(area)) for area, each in results.items()}
+def reproduction(
+    results: Mapping[int, Results], causes: Mapping[int, TrueCauses], seed: int
+) -> Reproduction:
+    """Compare the three areas with the printed numbers.
+
+    Parameters
+    ----------
+    results, causes
+        Results dictionary, and what the errors of the POS make alone, by area.
+    seed
+        Of the run.
+    """
+    findings = {
+        area: find(area, each, area_scenario(area), causes[area]) for area, each in results.items()
+    }
     return Reproduction(seed, results, findings, compare(results))

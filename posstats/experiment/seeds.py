@@ -4,6 +4,7 @@ The file is written by ``benchmarks/paper_seeds.py``; a test repeats some of its
 """
 
 import csv
+import math
 from collections.abc import Iterable
 from dataclasses import asdict
 from functools import lru_cache
@@ -31,6 +32,14 @@ def share(criterion: str, area: int) -> float:
     """Share of the seeds for which a criterion (a name of `CRITERIA`) holds in an area."""
     found = repeated()[area]
     return sum(bool(getattr(each, criterion)) for each in found) / len(found)
+
+
+def share_interval(criterion: str, area: int) -> tuple[float, float]:
+    """95 % interval of `share` by Wilson's score (J. Am. Stat. Assoc. 22 (1927), 209-212)."""
+    n, p, z = len(repeated()[area]), share(criterion, area), 1.959964
+    middle = (p + z**2 / (2 * n)) / (1.0 + z**2 / n)
+    half = z / (1.0 + z**2 / n) * math.sqrt(p * (1.0 - p) / n + z**2 / (4.0 * n**2))
+    return middle - half, middle + half
 
 
 def write(found: Iterable[tuple[int, AreaFindings]], path: Path) -> None:

@@ -344,7 +344,7 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
     if isinstance(source, Mapping):
         return read_table(Scenario, source, "scenario")
     path = Path(source)
-    if path.name == str(source) and not path.exists() and _shipped(path.name).is_file():
+    if path.name == str(source) and not path.is_file() and _shipped(path.name).is_file():
         return shipped_scenario(path.name)
     try:
         content = path.read_bytes()
