@@ -35,8 +35,7 @@ from posstats.bundle_screening import (
     without_rays,
 )
 from posstats.bundle_selection import Dropped, select_parameters
-from posstats.bundle_snooping import Snooping, snoop
-from posstats.bundle_tests import (
+from posstats.bundle_significance import (
     Correlations,
     GlobalTest,
     LocalTest,
@@ -46,6 +45,7 @@ from posstats.bundle_tests import (
     local_tests,
     parameter_tests,
 )
+from posstats.bundle_snooping import Snooping, snoop
 from posstats.bundle_weights import EstimatedWeights, estimate_weights
 from posstats.control import ControlChoice, chosen_control
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError

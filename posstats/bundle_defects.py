@@ -16,7 +16,7 @@ from posstats.bundle_parameters import (
     CommonParameter,
 )
 from posstats.bundle_problem import BundleProblem
-from posstats.bundle_tests import ParameterTest
+from posstats.bundle_significance import ParameterTest
 from posstats.errors import UndeterminedError
 
 _GNSS, _IMU = (*GNSS_SHIFTS, *GNSS_DRIFTS), (*IMU_SHIFTS, *IMU_DRIFTS)

@@ -18,7 +18,7 @@ from posstats.bundle_parameters import (
     LEVER_ARM,
 )
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_tests import LEAST_REDUNDANCY, ParameterTest
+from posstats.bundle_significance import LEAST_REDUNDANCY, ParameterTest
 from posstats.errors import UndeterminedError
 
 _Floats = NDArray[np.float64]

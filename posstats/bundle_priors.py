@@ -12,7 +12,7 @@ import numpy as np
 from posstats.bundle import adjust
 from posstats.bundle_parameters import BLOCK, CommonParameter
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_tests import parameter_tests
+from posstats.bundle_significance import parameter_tests
 
 CONTRADICTED = 4.0
 """Standard deviations beyond which measurements contradict a prior."""

@@ -12,7 +12,7 @@ from posstats.bundle_parameters import (
     CommonParameter,
 )
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_tests import ParameterTest, parameter_tests
+from posstats.bundle_significance import ParameterTest, parameter_tests
 from posstats.errors import UndeterminedError
 
 Reason = Literal["singular", "not determined", "not significant"]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from posstats.bundle import adjust
 from posstats.bundle_axes import images_with_wrong_axes
 from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
-from posstats.bundle_tests import critical_value, local_tests
+from posstats.bundle_significance import critical_value, local_tests
 from posstats.errors import ConvergenceError, UndeterminedError
 
 _Floats = NDArray[np.float64]

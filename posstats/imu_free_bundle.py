@@ -28,8 +28,8 @@ from posstats.bundle_screening import (
     without_control,
     without_rays,
 )
+from posstats.bundle_significance import GlobalTest, critical_value, local_tests
 from posstats.bundle_system import BundleSystem, State
-from posstats.bundle_tests import GlobalTest, critical_value, local_tests
 from posstats.errors import GeometryError
 from posstats.observability import weak_prior_rad
 

@@ -19,7 +19,7 @@ from posstats.bundle_parameters import (
     drift_parameters,
 )
 from posstats.bundle_rays import CAMERA_PARAMETERS
-from posstats.bundle_tests import parameter_tests
+from posstats.bundle_significance import parameter_tests
 from posstats.errors import UndeterminedError
 
 STRIPS, BLOCK = ("s0", "s1"), ("block",)

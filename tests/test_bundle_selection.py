@@ -16,7 +16,7 @@ from posstats.bundle_parameters import (
     drift_parameters,
 )
 from posstats.bundle_selection import select_parameters
-from posstats.bundle_tests import parameter_tests
+from posstats.bundle_significance import parameter_tests
 from posstats.errors import UndeterminedError
 
 FREE = drift_parameters((*GNSS_SHIFTS, *GNSS_DRIFTS, *IMU_SHIFTS, *IMU_DRIFTS), ("block",))

@@ -18,7 +18,7 @@ from posstats.bundle_block import bundle_problem
 from posstats.bundle_check_points import intersect_apart
 from posstats.bundle_parameters import BORESIGHT, CommonParameter
 from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_tests import parameter_tests
+from posstats.bundle_significance import parameter_tests
 from posstats.control import chosen_control
 
 _Bools = NDArray[np.bool_]

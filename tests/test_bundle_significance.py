@@ -9,7 +9,7 @@ from scipy import stats
 
 from posstats.bundle import adjust
 from posstats.bundle_parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
-from posstats.bundle_tests import (
+from posstats.bundle_significance import (
     correlations,
     critical_value,
     global_test,
