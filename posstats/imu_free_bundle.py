@@ -42,7 +42,7 @@ Progress = Callable[[int, int], object]
 ORIENTATION = "bundle"
 MAX_IMAGES = 3000  # the covariance of all their angles: 0.65 GB, and a few copies of it
 _IMAGES_AT_ONCE = 100
-_WEAK_POSITIONS = 100.0  # times the stated standard deviations, to look for blunders
+_WEAK = 100.0  # times the standard deviation of a contradicted position, to look for blunders
 _SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 _LEAST_REDUNDANCY = 1.0  # of all image coordinates together, to estimate their noise
 _ALPHA = 0.05  # that a block without blunders loses a ray, has a position or a control point named
@@ -198,23 +198,28 @@ def _image_scale(adjusted: AdjustedBundle) -> float:
 def _blunders(problem: BundleProblem, progress: Progress | None) -> _Bools:
     """(m,) rays without weight after those that contradict others beyond chance are taken out.
 
-    Positions are weak and control is left out, so that a wrong one turns no good ray into a bad
-    one. Residuals are judged by the noise that they show together, not by the stated one.
+    Control is left out, and positions that the others contradict are made weak, so that a wrong
+    one turns no good ray into a bad one. Rays are judged by the noise that their residuals show
+    together, not by the stated one.
     """
-    relaxed = _relaxed(problem)
-    adjusted = adjust(relaxed, progress=progress)
-    while (wrong := _worst_of_points(relaxed, adjusted)).any():
-        relaxed = without_rays(_from(adjusted, relaxed), wrong)
-        adjusted = adjust(relaxed, progress=progress)
-    blunders: _Bools = np.isinf(relaxed.sigma_px)
-    return blunders
+    kept = without_control(problem) if pos_holds(problem) else problem
+    while True:
+        adjusted = adjust(kept, progress=progress)
+        positions = _contradicted(kept, adjusted, "gnss")
+        wrong = _worst_of_points(kept, adjusted)
+        if len(positions):
+            kept = _with_weak_positions(_from(adjusted, kept), positions)
+        elif wrong.any():
+            kept = without_rays(_from(adjusted, kept), wrong)
+        else:
+            blunders: _Bools = np.isinf(kept.sigma_px)
+            return blunders
 
 
-def _relaxed(problem: BundleProblem) -> BundleProblem:
-    pos = problem.pos
-    weak = replace(pos, sigma_antenna_m=_WEAK_POSITIONS * pos.sigma_antenna_m)
-    relaxed = replace(problem, pos=weak)
-    return without_control(relaxed) if pos_holds(problem) else relaxed
+def _with_weak_positions(problem: BundleProblem, images: _Ints) -> BundleProblem:
+    sigma = problem.pos.sigma_antenna_m.copy()
+    sigma[images] *= _WEAK
+    return replace(problem, pos=replace(problem.pos, sigma_antenna_m=sigma))
 
 
 def _worst_of_points(problem: BundleProblem, adjusted: AdjustedBundle) -> _Bools:

@@ -1,10 +1,13 @@
 """Angle errors from the bundle: simulated truth, a dense adjustment, control, blunders, report."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from dense_bundle import DenseBundle
+from helpers import shared_path
 from scipy import stats
 from small_blocks import Layout, observed_block, true_block
 from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
@@ -12,9 +15,11 @@ from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 from posstats.analysis import Settings, analyse
 from posstats.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
 from posstats.block import Block
+from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.imu_free_bundle import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.reports import block_document, html
+from posstats.reports.cli import cli
 from posstats.results import results
 from posstats.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.stereo import stereo_models
@@ -273,3 +278,24 @@ def test_the_report_without_a_bundle_has_no_such_section(block):
     values = results(analyse(block, Settings(errors="adjusted")))
     assert values["bundle"] is None
     assert 'id="table-bundle"' not in html.render(block_document.build(values))
+
+
+def test_the_command_takes_the_errors_from_the_bundle(block, tmp_path):
+    write_block(block, tmp_path / "block")
+    command = ["analyse", str(tmp_path / "block"), "--out", str(tmp_path / "out")]
+    run = CliRunner().invoke(cli, [*command, "--errors", "bundle", "--no-pdf"])
+    assert run.exit_code == 0, run.output
+    written = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert written["bundle"]["dof"] > 0
+    assert "Bundle adjustment" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_injected_drift_of_the_real_block_is_found():
+    folder = shared_path("data", "ign-fd1305")
+    found = analyse(read_block(folder), Settings(errors="bundle"))
+    injected = json.loads((folder / "injected.json").read_text(encoding="utf-8"))
+    row = next(
+        each for each in results(found)["regression"]
+        if (each["angle"], each["scope"]) == ("omega", "block")
+    )  # fmt: skip
+    assert abs(row["gls_slope_rad_per_s"] - injected["slope_rad_per_s"][0]) < 3e-8
