@@ -43,7 +43,9 @@ def main() -> None:
 def _find(run: tuple[int, int]) -> AreaFindings:
     seed, area = run
     analysis = run_area(area, seed)
-    return find(area, results(analysis), area_scenario(area), true_causes(analysis.block))
+    return find(
+        area, results(analysis), area_scenario(area), true_causes(analysis.block, analysis.models)
+    )
 
 
 def _failed(found: AreaFindings) -> str:

@@ -261,8 +261,8 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
 
     Needs no input. Writes paper.html, paper.pdf, comparison.json (every published number beside
-    the reproduced one), and area1, area2, area3 with what analyse writes. Files of the same names
-    are replaced.
+    the reproduced one), and area1, area2, area3 with results.json, corrected_orientations.csv,
+    tables and figures as analyse writes them. Files of the same names are replaced.
 
     \b
     Example:

@@ -12,11 +12,10 @@ from typing import Any
 from posstats.errors import PosstatsError
 from posstats.experiment.areas import AREAS, TrueCauses, run_area, true_causes
 
-from . import paper_figures
+from . import figures, paper_figures, tables
 from .analysis_folder import write_analysis
 from .figure_style import Drawing
 from .progress import progress_bar
-from .report import write_report
 
 _Numbers = tuple[dict[str, Any], TrueCauses]
 
@@ -79,11 +78,13 @@ def _reported(
 
 def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
     analysis = run_area(area, seed)
-    return write_analysis(analysis, folder, created=created), true_causes(analysis.block)
+    causes = true_causes(analysis.block, analysis.models)
+    return write_analysis(analysis, folder, created=created), causes
 
 
 def _written(area: int, values: dict[str, Any], folder: Path) -> tuple[Drawing, ...]:
-    write_report(values, folder, pdf=False)
+    tables.write_tables(values, folder / "tables")
+    figures.write_figures(values, folder / "figures")
     return paper_figures.draw_area(area, values)
 
 

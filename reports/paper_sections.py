@@ -221,8 +221,8 @@ def _provenance(run: Reproduction) -> Part:
         for name in ("rules", "scope", "errors", "frame", "robust")
     ]
     text = (
-        "Each area was analysed like any block; its results, tables, figures and report are in "
-        "area1/, area2/ and area3/. Every published number and its reproduction is in "
+        "Each area was analysed like any block; its results, tables and figures are in area1/, "
+        "area2/ and area3/. Every published number and its reproduction is in "
         f"comparison.json. The command posstats paper --seed {run.seed} gives the same numbers "
         "again."
     )

@@ -20,6 +20,7 @@ from posstats.experiment.published import (
     recomputed,
 )
 from posstats.experiment.seeds import repeated, share, share_interval, write
+from posstats.stereo import stereo_models
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError
 
@@ -105,7 +106,7 @@ def test_position_errors_alone_are_not_taken_for_angle_errors():
     )  # fmt: skip
     flight = replace(scenario.flight, images_per_strip=(6,) * 4)
     block = simulate(replace(scenario, errors=errors, flight=flight))
-    causes = true_causes(block)
+    causes = true_causes(block, stereo_models(block))
     assert causes.positions_mm > 10.0 * causes.angles_mm
     found = replace(
         repeated()[3][0],
@@ -118,7 +119,8 @@ def test_position_errors_alone_are_not_taken_for_angle_errors():
 
 
 def test_another_seed_simulates_another_area_and_is_the_stored_one():
-    causes = true_causes(simulate(area_scenario(3), area_seed(2, 3)))
+    block = simulate(area_scenario(3), area_seed(2, 3))
+    causes = true_causes(block, stereo_models(block))
     first, second = repeated()[3][:2]
     assert causes.angles_mm == pytest.approx(second.angles_mm, rel=1e-6)
     assert causes.angles_mm != pytest.approx(first.angles_mm, rel=1e-6)

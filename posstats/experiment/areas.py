@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from posstats.analysis import Analysis, Progress, Settings, analyse
 from posstats.block import Block, Orientations
 from posstats.parallax import block_statistics, model_rms_px
-from posstats.stereo import stereo_models
+from posstats.stereo import StereoModels
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 
 AREAS = (1, 2, 3)
@@ -57,18 +57,19 @@ class TrueCauses:
     positions_mm: float
 
 
-def true_causes(block: Block) -> TrueCauses:
+def true_causes(block: Block, models: StereoModels) -> TrueCauses:
     """What only a simulation can tell: which error of the POS makes the parallax.
 
     Parameters
     ----------
     block
         Simulated; its adjusted orientations are the truth.
+    models
+        Its stereo models.
     """
     pos, truth = block.orientations, block.adjusted
     if truth is None:
         raise ValueError("only a simulated block knows its true orientations")
-    models = stereo_models(block)
 
     def mean_mm(orientations: Orientations) -> float:
         rms_px = model_rms_px(models.with_orientations(orientations))
