@@ -20,10 +20,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from posstats.adjustment.block_problem import bundle_problem
 from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_parameters import BLOCK, IMU_DRIFTS, IMU_SHIFTS, drift_parameters
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.bundle.parameters import BLOCK, IMU_DRIFTS, IMU_SHIFTS, drift_parameters
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.synthetic import load_scenario, simulate
 
 try:

@@ -19,9 +19,9 @@ from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.block import Block, Orientations
 from posstats.bundle import adjust
-from posstats.bundle_observations import antenna_positions, imu_angles
-from posstats.bundle_parameters import BLOCK, BORESIGHT, LEVER_ARM, drift_parameters
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM, drift_parameters
+from posstats.bundle.pos_observations import antenna_positions, imu_angles
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.correction import corrected
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.checked_table import (

@@ -15,21 +15,21 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
-from posstats.block import Block, Orientations
-from posstats.block_tridiagonal import ArrowFactor, factorised
-from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_check_points import intersect_apart
-from posstats.bundle_observations import angles_by_rotation_vector
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_screening import (
+from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.check_points import intersect_apart
+from posstats.adjustment.screening import (
     contradicting_rays,
     pos_holds,
     without_control,
     without_rays,
 )
-from posstats.bundle_significance import GlobalTest, critical_value, local_tests
-from posstats.bundle_system import BundleSystem, State
+from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
+from posstats.block import Block, Orientations
+from posstats.block_tridiagonal import ArrowFactor, factorised
+from posstats.bundle import adjust
+from posstats.bundle.pos_observations import angles_by_rotation_vector
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.bundle.system import BundleSystem, State
 from posstats.errors import GeometryError
 from posstats.observability import weak_prior_rad
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any, cast
 
 from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
-from posstats.adjustment_results import adjustment_results, write_adjustment
+from posstats.adjustment.control import NAMED_CHOICES, read_ids
+from posstats.adjustment.results import adjustment_results, write_adjustment
 from posstats.block_io import read_block
 from posstats.calibration import apply_calibration, read_calibration
-from posstats.control import NAMED_CHOICES, read_ids
 from posstats.errors import PosstatsError
 from posstats.results import to_json
 

@@ -13,7 +13,7 @@ from small_scenario import small_block
 
 from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
-from posstats.adjustment_results import adjustment_results
+from posstats.adjustment.results import adjustment_results
 from posstats.block_io import write_block
 from posstats.reports import adjustment_document, html
 from posstats.reports.cli import cli

@@ -10,7 +10,7 @@ from small_scenario import OMEGA_CONSTANT_RAD, OMEGA_DRIFT_RAD_PER_S, small_bloc
 
 from posstats import read_block
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
-from posstats.adjustment_results import adjustment_results
+from posstats.adjustment.results import adjustment_results
 from posstats.block_io import write_block
 from posstats.errors import PosstatsError
 from posstats.intersection import intersect
@@ -122,7 +122,7 @@ def test_covariance_of_a_check_point_by_perturbing_all_that_it_depends_on(corner
 
 def _covariance_of_elements(adjustment: Adjustment, images) -> np.ndarray:
     """Joint covariance of omega, phi, kappa, X, Y, Z of images of neighbouring levels."""
-    from posstats.bundle_observations import angles_by_rotation_vector
+    from posstats.bundle.pos_observations import angles_by_rotation_vector
 
     n, adjusted = len(images), adjustment.adjusted
     by_pose = np.tile(np.eye(6), (n, 1, 1))

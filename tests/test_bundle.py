@@ -8,10 +8,10 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 from small_blocks import CAMERA, Layout, observed_block, true_block
 
+from posstats.adjustment.block_problem import bundle_problem
 from posstats.block import GroundPoints
 from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -21,8 +21,8 @@ from posstats.bundle_parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.bundle_problem import Control
-from posstats.bundle_system import BundleSystem
+from posstats.bundle.problem import Control
+from posstats.bundle.system import BundleSystem
 from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
 from posstats.rotation import (
     rotation_from_vector,
@@ -350,7 +350,7 @@ def test_progress_is_told_and_an_iteration_that_does_not_settle_is_refused(monke
     told = []
     adjust(problem, progress=lambda *step: told.append(step))
     assert [step[0] for step in told] == list(range(1, len(told) + 1))
-    monkeypatch.setattr("posstats.bundle.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("posstats.bundle.gauss_newton.MAX_ITERATIONS", 1)
     with pytest.raises(ConvergenceError, match="did not settle in 1 step"):
         adjust(problem)
 

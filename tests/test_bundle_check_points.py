@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from posstats.bundle_check_points import ideal_xy
-from posstats.bundle_rays import CAMERA_PARAMETERS, Cameras
+from posstats.adjustment.check_points import ideal_xy
+from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras
 from posstats.camera import Camera, Distortion
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from dense_bundle import noisy_problem
 
+from posstats.adjustment.defects import defects, weak_parameters
+from posstats.adjustment.significance import parameter_tests
 from posstats.bundle import adjust
-from posstats.bundle_defects import defects, weak_parameters
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -18,8 +19,7 @@ from posstats.bundle_parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.bundle_rays import CAMERA_PARAMETERS
-from posstats.bundle_significance import parameter_tests
+from posstats.bundle.rays import CAMERA_PARAMETERS
 from posstats.errors import UndeterminedError
 
 STRIPS, BLOCK = ("s0", "s1"), ("block",)

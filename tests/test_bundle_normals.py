@@ -5,12 +5,12 @@ from itertools import pairwise
 import numpy as np
 from strip_scene import CAMERA, measurements, scene
 
-from posstats.bundle_groups import grouped
-from posstats.bundle_normals import Reduced, accumulate
-from posstats.bundle_point import Ground, Measured, Network
-from posstats.bundle_points import move_points, ray_residuals
-from posstats.bundle_precision import Cofactors, PointPrecision, point_precision
-from posstats.bundle_rays import Cameras, Images, project_rays
+from posstats.bundle.ground_points import move_points, ray_residuals
+from posstats.bundle.normals import Reduced, accumulate
+from posstats.bundle.point_groups import grouped
+from posstats.bundle.point_normals import Ground, Measured, Network
+from posstats.bundle.precision import Cofactors, PointPrecision, point_precision
+from posstats.bundle.rays import Cameras, Images, project_rays
 
 USED = [0, 3, 6, 10]  # camera_c, bauer_s1, brown_k1, brown_p2 of two cameras, c in common
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from posstats.bundle_observations import PosObservations, linearised_pos
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -16,6 +15,7 @@ from posstats.bundle_parameters import (
     drift_parameters,
     parameter_effects,
 )
+from posstats.bundle.pos_observations import PosObservations, linearised_pos
 from posstats.errors import GeometryError
 from posstats.rotation import axis_rotation, rotation_from_angles, rotation_from_vector
 

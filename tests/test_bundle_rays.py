@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from strip_scene import CAMERA, measurements, scene
 
-from posstats.bundle_rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
+from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
 from posstats.camera import Camera, Distortion
 from posstats.rotation import rotation_from_vector
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from dense_bundle import noisy_problem
 
+from posstats.adjustment.selection import select_parameters
+from posstats.adjustment.significance import parameter_tests
 from posstats.bundle import adjust
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     GNSS_DRIFTS,
     GNSS_SHIFTS,
     IMU_DRIFTS,
@@ -15,8 +17,6 @@ from posstats.bundle_parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.bundle_selection import select_parameters
-from posstats.bundle_significance import parameter_tests
 from posstats.errors import UndeterminedError
 
 FREE = drift_parameters((*GNSS_SHIFTS, *GNSS_DRIFTS, *IMU_SHIFTS, *IMU_DRIFTS), ("block",))

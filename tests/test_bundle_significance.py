@@ -7,9 +7,7 @@ import pytest
 from dense_bundle import DenseBundle, noisy_problem
 from scipy import stats
 
-from posstats.bundle import adjust
-from posstats.bundle_parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
-from posstats.bundle_significance import (
+from posstats.adjustment.significance import (
     correlations,
     critical_value,
     global_test,
@@ -18,7 +16,9 @@ from posstats.bundle_significance import (
     noncentrality,
     parameter_tests,
 )
-from posstats.bundle_weights import GROUPS, rescaled
+from posstats.adjustment.weights import GROUPS, rescaled
+from posstats.bundle import adjust
+from posstats.bundle.parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
 
 SHIFTS = (
     *(CommonParameter(name) for name in GNSS_SHIFTS),

@@ -7,10 +7,10 @@ import pytest
 from dense_bundle import noisy_problem
 from small_scenario import small_block
 
+from posstats.adjustment.axes import images_with_wrong_axes
+from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.snooping import snoop
 from posstats.bundle import adjust
-from posstats.bundle_axes import images_with_wrong_axes
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_snooping import snoop
 
 ERRORS = {
     "image_px": 0.2,

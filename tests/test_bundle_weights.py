@@ -3,8 +3,8 @@
 import numpy as np
 from dense_bundle import DenseBundle, noisy_problem
 
+from posstats.adjustment.weights import GROUPS, estimate_weights, rescaled, variance_factors
 from posstats.bundle import adjust
-from posstats.bundle_weights import GROUPS, estimate_weights, rescaled, variance_factors
 
 STATED_WRONG = {"image": 4.0, "gnss": 0.25, "imu": 1.0, "control": 1.0}
 

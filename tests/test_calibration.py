@@ -13,9 +13,9 @@ from click.testing import CliRunner
 from small_scenario import small_block
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
+from posstats.adjustment.block_problem import bundle_problem
 from posstats.block_io import write_block
 from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
 from posstats.calibration import (
     Calibration,
     apply_calibration,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_scenario import small_block
 
-from posstats.control import chosen_control, measured_points, read_ids
+from posstats.adjustment.control import chosen_control, measured_points, read_ids
 from posstats.errors import PosstatsError
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from small_scenario import small_block
 
-from posstats.adjustment_settings import DriftPriors
-from posstats.bundle_parameters import BORESIGHT
+from posstats.adjustment.settings import DriftPriors
+from posstats.bundle.parameters import BORESIGHT
 from posstats.rotation import vector_from_rotation, wrapped
 from posstats.stereo import stereo_models
 from posstats.wucaps.adjustments import CONTROLS, adjusted_block, control_points, pos_parameters

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
-from posstats.adjustment_settings import AdjustmentSettings, DriftPriors, additional_parameters
+from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.check_points import intersect_apart
+from posstats.adjustment.control import chosen_control
+from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
+from posstats.adjustment.significance import parameter_tests
 from posstats.block import Block, GroundPoints, Orientations
 from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_check_points import intersect_apart
-from posstats.bundle_parameters import BORESIGHT, CommonParameter
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_significance import parameter_tests
-from posstats.control import chosen_control
+from posstats.bundle.parameters import BORESIGHT, CommonParameter
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 
 _Bools = NDArray[np.bool_]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle_observations import PosObservations, angles_by_rotation_vector
-from posstats.bundle_parameters import CommonParameter, Exposures
+from posstats.bundle.parameters import CommonParameter, Exposures
+from posstats.bundle.pos_observations import PosObservations, angles_by_rotation_vector
 from posstats.rotation import AngleSystem, angles_from_rotation
 
 _Floats = NDArray[np.float64]

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations, TiePoints
 from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle_parameters import ParameterEffects, parameter_effects
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
-from posstats.bundle_system import BundleSystem, State
+from posstats.bundle.parameters import ParameterEffects, parameter_effects
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
+from posstats.bundle.system import BundleSystem, State
 from posstats.errors import GeometryError
 from posstats.intersection import IntersectedPoints, intersect
 

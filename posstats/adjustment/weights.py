@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from posstats.bundle import adjust
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 
 GROUPS = ("image", "gnss", "imu", "control")
 LEAST_REDUNDANCY = 10.0

@@ -8,7 +8,7 @@ the image.
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_problem import BundleProblem
+from posstats.bundle.problem import BundleProblem
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

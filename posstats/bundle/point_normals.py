@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_groups import PointGroups
-from posstats.bundle_rays import Cameras, Images, Ray, observe
+from posstats.bundle.point_groups import PointGroups
+from posstats.bundle.rays import Cameras, Images, Ray, observe
 from posstats.compiled import inlined_kernel
 
 _Floats = NDArray[np.float64]

@@ -19,23 +19,21 @@ from posstats.accuracy import (
     differences,
     surveyed_check_points,
 )
-from posstats.adjustment_settings import AdjustmentSettings, DriftPriors, additional_parameters
-from posstats.block import Block, GroundPoints, Orientations
-from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_check_points import intersect_apart
-from posstats.bundle_diagnosis import GROSS, likely_mistake
-from posstats.bundle_observability import Undetermined, singular_message, undetermined
-from posstats.bundle_priors import with_fitting_priors
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_screening import (
+from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.check_points import intersect_apart
+from posstats.adjustment.control import ControlChoice, chosen_control
+from posstats.adjustment.diagnosis import GROSS, likely_mistake
+from posstats.adjustment.observability import Undetermined, singular_message, undetermined
+from posstats.adjustment.priors import with_fitting_priors
+from posstats.adjustment.screening import (
     contradicting_rays,
     pos_holds,
     without_control,
     without_rays,
 )
-from posstats.bundle_selection import Dropped, select_parameters
-from posstats.bundle_significance import (
+from posstats.adjustment.selection import Dropped, select_parameters
+from posstats.adjustment.settings import AdjustmentSettings, additional_parameters
+from posstats.adjustment.significance import (
     Correlations,
     GlobalTest,
     LocalTest,
@@ -45,22 +43,16 @@ from posstats.bundle_significance import (
     local_tests,
     parameter_tests,
 )
-from posstats.bundle_snooping import Snooping, snoop
-from posstats.bundle_weights import EstimatedWeights, estimate_weights
-from posstats.control import ControlChoice, chosen_control
+from posstats.adjustment.snooping import Snooping, snoop
+from posstats.adjustment.weights import EstimatedWeights, estimate_weights
+from posstats.block import Block, GroundPoints, Orientations
+from posstats.bundle import adjust
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
 Progress = Callable[[str, float], object]
-
-__all__ = [
-    "Adjustment",
-    "AdjustmentSettings",
-    "ControlChoice",
-    "DriftPriors",
-    "adjust_block",
-]
 
 ORIENTATION = "bundle"
 

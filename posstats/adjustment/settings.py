@@ -5,8 +5,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from posstats.adjustment.control import NAMED_CHOICES, ControlChoice
 from posstats.block import Block
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     BLOCK,
     BORESIGHT,
     GNSS_DRIFTS,
@@ -16,7 +17,6 @@ from posstats.bundle_parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.control import NAMED_CHOICES, ControlChoice
 from posstats.errors import PosstatsError
 
 DriftScope = Literal["none", "block", "strip"]

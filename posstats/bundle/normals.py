@@ -1,6 +1,6 @@
 """Normal equations of a bundle adjustment, reduced by the ground points; compiled.
 
-With N, n and K of `bundle_point` and N = L L', a point's part of the normal equations of all
+With N, n and K of `point_normals` and N = L L', a point's part of the normal equations of all
 other unknowns is
 
     sum w A'A - T'T,    sum w A'v - T't        T = L^-1 K,  t = L^-1 n
@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_groups import PointGroups
-from posstats.bundle_point import (
+from posstats.bundle.point_groups import PointGroups
+from posstats.bundle.point_normals import (
     Ground,
     Measured,
     Network,
@@ -25,7 +25,7 @@ from posstats.bundle_point import (
     linearise,
     solve_lower,
 )
-from posstats.bundle_rays import Cameras, Images, Ray, new_ray
+from posstats.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.compiled import inlined_kernel, kernel
 from posstats.kernel_algebra import add_products
 

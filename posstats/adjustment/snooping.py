@@ -4,7 +4,7 @@ The observation of the largest |w| above the critical value goes, as a whole: bo
 a ray, the three of a control point, of an antenna position or of a set of angles. Rays go together
 if they share no point, are measured in no image that sees a point of another, and have at least
 half the largest |w|: what one of them does to the w of another is far less. Images whose axes
-are exchanged or reversed bend the whole block, so they are looked for first (`bundle_axes`).
+are exchanged or reversed bend the whole block, so they are looked for first (`axes`).
 """
 
 from collections.abc import Mapping
@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.adjustment.axes import images_with_wrong_axes
+from posstats.adjustment.significance import critical_value, local_tests
 from posstats.bundle import adjust
-from posstats.bundle_axes import images_with_wrong_axes
-from posstats.bundle_problem import AdjustedBundle, BundleProblem, Control
-from posstats.bundle_significance import critical_value, local_tests
+from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
 from posstats.errors import ConvergenceError, UndeterminedError
 
 _Floats = NDArray[np.float64]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_rays import CAMERA_PARAMETERS
+from posstats.bundle.rays import CAMERA_PARAMETERS
 from posstats.errors import GeometryError
 
 _Floats = NDArray[np.float64]

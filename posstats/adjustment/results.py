@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats import __version__
-from posstats.adjustment import Adjustment
-from posstats.bundle_parameters import UNITS
-from posstats.bundle_significance import HIGH_CORRELATION
-from posstats.bundle_snooping import Blunder
-from posstats.bundle_weights import variance_factors
+from posstats.adjustment.significance import HIGH_CORRELATION
+from posstats.adjustment.snooping import Blunder
+from posstats.adjustment.steps import Adjustment
+from posstats.adjustment.weights import variance_factors
+from posstats.bundle.parameters import UNITS
 from posstats.formats.adjusted_writing import write_adjusted, write_points
 from posstats.result_rows import accuracy_row, block_row, image_rows, residual_rows
 from posstats.results import plain, versions

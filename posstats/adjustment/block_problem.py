@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block
-from posstats.bundle_observations import PosObservations
-from posstats.bundle_parameters import CommonParameter, Exposures
-from posstats.bundle_problem import BundleProblem, Control
+from posstats.bundle.parameters import CommonParameter, Exposures
+from posstats.bundle.pos_observations import PosObservations
+from posstats.bundle.problem import BundleProblem, Control
 from posstats.collinearity import INTERSECTED, intersect_rays
 from posstats.errors import GeometryError
 

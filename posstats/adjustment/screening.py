@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.bundle import adjust
-from posstats.bundle_axes import images_with_wrong_axes
-from posstats.bundle_problem import BundleProblem, Control
+from posstats.bundle.problem import BundleProblem, Control
 
 _Bools = NDArray[np.bool_]
 

@@ -1,14 +1,14 @@
 """Ground points of a bundle adjustment between two solutions, and their residuals; compiled.
 
-With N, n and K of `bundle_point`, a point's step is -N^-1 (n + K s) for a step s of all other
+With N, n and K of `point_normals`, a point's step is -N^-1 (n + K s) for a step s of all other
 unknowns.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_groups import PointGroups
-from posstats.bundle_point import (
+from posstats.bundle.point_groups import PointGroups
+from posstats.bundle.point_normals import (
     Ground,
     Measured,
     Network,
@@ -19,7 +19,7 @@ from posstats.bundle_point import (
     solve_lower,
     solve_upper,
 )
-from posstats.bundle_rays import Cameras, Images, Ray, new_ray
+from posstats.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.compiled import inlined_kernel, kernel
 
 _Floats = NDArray[np.float64]
@@ -39,7 +39,7 @@ def move_points(
 ) -> None:
     """Move the points of some groups as a step of the other unknowns asks for.
 
-    Parameters are those of `bundle_normals.accumulate`, and
+    Parameters are those of `normals.accumulate`, and
 
     image_step, common_step
         (n, 6), (k,) solution of the reduced normal equations.
@@ -104,7 +104,7 @@ def _square_sum(
 def intersect_points(first_group: int, last_group: int, network: Network) -> None:
     """Intersect the points of some groups anew, each for itself, the images held.
 
-    Parameters are those of `bundle_normals.accumulate`; the ground positions are the start, and
+    Parameters are those of `normals.accumulate`; the ground positions are the start, and
     overwritten.
     """
     groups, measured, ground, images, cameras = network
@@ -145,7 +145,7 @@ def ray_residuals(
 ) -> None:
     """Write the residuals (m, 2) of the rays of some groups, NaN behind a camera.
 
-    Parameters are those of `bundle_normals.accumulate`; a residual is computed minus measured.
+    Parameters are those of `normals.accumulate`; a residual is computed minus measured.
     """
     groups, measured, ground, images, cameras = network
     ray = new_ray(0)

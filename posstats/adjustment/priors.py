@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from posstats.adjustment.significance import parameter_tests
 from posstats.bundle import adjust
-from posstats.bundle_parameters import BLOCK, CommonParameter
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_significance import parameter_tests
+from posstats.bundle.parameters import BLOCK, CommonParameter
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 
 CONTRADICTED = 4.0
 """Standard deviations beyond which measurements contradict a prior."""

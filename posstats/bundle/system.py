@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block_tridiagonal import ArrowMatrix, SelectedInverse, factorised
-from posstats.bundle_groups import GroupedRays, grouped
-from posstats.bundle_normals import Reduced, accumulate
-from posstats.bundle_observations import LinearisedPos, linearised_pos
-from posstats.bundle_parameters import ParameterEffects, parameter_effects
-from posstats.bundle_point import Ground, Measured, Network
-from posstats.bundle_points import intersect_points, move_points, ray_residuals
-from posstats.bundle_precision import Cofactors, PointPrecision, point_precision
-from posstats.bundle_problem import BundleProblem
-from posstats.bundle_rays import CAMERA_PARAMETERS, Cameras, Images
+from posstats.bundle.ground_points import intersect_points, move_points, ray_residuals
+from posstats.bundle.normals import Reduced, accumulate
+from posstats.bundle.parameters import ParameterEffects, parameter_effects
+from posstats.bundle.point_groups import GroupedRays, grouped
+from posstats.bundle.point_normals import Ground, Measured, Network
+from posstats.bundle.pos_observations import LinearisedPos, linearised_pos
+from posstats.bundle.precision import Cofactors, PointPrecision, point_precision
+from posstats.bundle.problem import BundleProblem
+from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images
 from posstats.image_levels import Levels, breadth_first_levels
 from posstats.rotation import rotation_from_vector
 

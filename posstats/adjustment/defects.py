@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from posstats.bundle_parameters import (
+from posstats.adjustment.significance import ParameterTest
+from posstats.bundle.parameters import (
     BLOCK,
     BORESIGHT,
     GNSS_DRIFTS,
@@ -15,8 +16,7 @@ from posstats.bundle_parameters import (
     LEVER_ARM,
     CommonParameter,
 )
-from posstats.bundle_problem import BundleProblem
-from posstats.bundle_significance import ParameterTest
+from posstats.bundle.problem import BundleProblem
 from posstats.errors import UndeterminedError
 
 _GNSS, _IMU = (*GNSS_SHIFTS, *GNSS_DRIFTS), (*IMU_SHIFTS, *IMU_DRIFTS)

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.screening import contradicting_rays, without_rays
 from posstats.block import Block, Orientations
 from posstats.bundle import adjust
-from posstats.bundle_block import bundle_problem
-from posstats.bundle_parameters import CommonParameter
-from posstats.bundle_screening import contradicting_rays, without_rays
+from posstats.bundle.parameters import CommonParameter
 from posstats.errors import ConvergenceError, GeometryError
 
 _Bools = NDArray[np.bool_]

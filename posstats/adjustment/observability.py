@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from posstats.bundle_defects import defects
-from posstats.bundle_parameters import (
+from posstats.adjustment.defects import defects
+from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
+from posstats.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -17,8 +18,7 @@ from posstats.bundle_parameters import (
     IMU_SHIFTS,
     LEVER_ARM,
 )
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_significance import LEAST_REDUNDANCY, ParameterTest
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.errors import UndeterminedError
 
 _Floats = NDArray[np.float64]

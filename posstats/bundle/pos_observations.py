@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_parameters import ParameterEffects
+from posstats.bundle.parameters import ParameterEffects
 from posstats.rotation import (
     AngleSystem,
     angles_from_rotation,

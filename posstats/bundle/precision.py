@@ -1,7 +1,7 @@
 """Covariances of ground points and redundancy numbers after a bundle adjustment; compiled.
 
 With C the covariance of the other unknowns of a point's rays, and K, N and A, B of
-`bundle_point`, U = N^-1 K gives
+`point_normals`, U = N^-1 K gives
 
     cov X = N^-1 + U C U',       cov (A dx + B dX) = h C h' + B N^-1 B',    h = A - B U,
 
@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle_groups import PointGroups
-from posstats.bundle_point import (
+from posstats.bundle.point_groups import PointGroups
+from posstats.bundle.point_normals import (
     Ground,
     Measured,
     Network,
@@ -25,7 +25,7 @@ from posstats.bundle_point import (
     solve_lower,
     solve_upper,
 )
-from posstats.bundle_rays import Cameras, Images, Ray, new_ray
+from posstats.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.compiled import inlined_kernel, kernel
 
 _Floats = NDArray[np.float64]
@@ -228,7 +228,7 @@ def point_precision(
 ) -> None:
     """Write the results of the points of groups first_group ... last_group - 1.
 
-    Parameters are those of `bundle_normals.accumulate`, and `cofactors` of the solution, of
+    Parameters are those of `normals.accumulate`, and `cofactors` of the solution, of
     the same pairs.
     """
     groups, measured, ground, images, cameras = network

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle_problem import AdjustedBundle, BundleProblem, ObservationGroup
-from posstats.bundle_system import BundleSystem, Equations, State
+from posstats.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
+from posstats.bundle.system import BundleSystem, Equations, State
 from posstats.errors import ConvergenceError, GeometryError
 
 _Floats = NDArray[np.float64]

@@ -3,16 +3,16 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from posstats.adjustment.significance import ParameterTest, parameter_tests
 from posstats.bundle import adjust
-from posstats.bundle_parameters import (
+from posstats.bundle.parameters import (
     GNSS_DRIFTS,
     GNSS_SHIFTS,
     IMU_DRIFTS,
     IMU_SHIFTS,
     CommonParameter,
 )
-from posstats.bundle_problem import AdjustedBundle, BundleProblem
-from posstats.bundle_significance import ParameterTest, parameter_tests
+from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.errors import UndeterminedError
 
 Reason = Literal["singular", "not determined", "not significant"]
