@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.block import Block, Orientations
-from posstats.bundle import adjust
-from posstats.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM, drift_parameters
+from posstats.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
 from posstats.bundle.pos_observations import antenna_positions, imu_angles
 from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.correction import corrected
@@ -39,7 +38,6 @@ from posstats.rotation import rotation_from_angles, vector_from_rotation
 
 _Floats = NDArray[np.float64]
 
-LEVER_ARM_PRIOR_M = 1.0
 SCHEMA = "posstats-calibration/1"
 _HEAD = "# Boresight and lever arm of a POS, measured minus true: see docs/wucaps.md"
 _PITCH_ROLL_YAW = np.array([1, 0, 2])  # as omega, phi, kappa of Rx(omega) Ry(phi) Rz(kappa)
@@ -79,28 +77,17 @@ class Calibration:
         return BORESIGHT if self.lever_arm_m is None else (*BORESIGHT, *LEVER_ARM)
 
 
-def calibrate(adjustment: Adjustment, *, lever_arm: bool = False) -> Calibration:
-    """The calibration that an adjustment with unknown boresight gives.
+def calibrate(adjustment: Adjustment) -> Calibration:
+    """The calibration that the adjustment of a calibration block gives.
 
-    Parameters
-    ----------
-    adjustment
-        Of the calibration block.
-    lever_arm
-        Adjust again, with the lever arm unknown: what the POS leaves of it, expected to be 0 with
-        a standard deviation of `LEVER_ARM_PRIOR_M`.
+    Boresight, and lever arm if it was unknown too.
 
     Raises
     ------
     PosstatsError
         If the boresight was no unknown, or the block has several cameras.
     """
-    problem, adjusted = adjustment.problem, adjustment.adjusted
-    if lever_arm:
-        arm = drift_parameters(LEVER_ARM, (BLOCK,), LEVER_ARM_PRIOR_M)
-        problem = replace(problem, parameters=(*problem.parameters, *arm))
-        adjusted = adjust(problem)
-    return calibration_of(adjustment.block, problem, adjusted)
+    return calibration_of(adjustment.block, adjustment.problem, adjustment.adjusted)
 
 
 def calibration_of(block: Block, problem: BundleProblem, adjusted: AdjustedBundle) -> Calibration:
@@ -188,9 +175,12 @@ def _require_camera(block: Block, calibration: Calibration) -> None:
         )
 
 
-def calibrated(block: Block, path: Path) -> Block:
-    """The block with the calibration of a file taken off, the file among its inputs."""
-    taken_off = apply_calibration(block, read_calibration(path))
+def calibrated(block: Block, path: Path, *, unknown: bool = False) -> Block:
+    """The block with the calibration of a file taken off, the file among its inputs.
+
+    `unknown` as for `apply_calibration`.
+    """
+    taken_off = apply_calibration(block, read_calibration(path), unknown=unknown)
     read = (path.name, sha256(path.read_bytes()))
     return replace(taken_off, inputs=(*block.inputs, read))
 

@@ -87,6 +87,7 @@ def _parameters(results: Results) -> Part:
     )
     tables = (
         table,
+        adjustment_tables.cameras(results),
         adjustment_tables.dropped(results),
         adjustment_tables.correlations(results),
     )
@@ -191,6 +192,8 @@ def _settings(results: Results) -> list[tuple[str, str]]:
         ("Control points", chosen),
         ("Shifts and drifts of the POS", DRIFTS[settings["drift"]]),
         ("Image deformation", DEFORMATION[settings["self_calibration"]]),
+        ("Principal distance and point estimated", _yes(settings["camera"])),
+        ("Lever arm estimated", _yes(settings["lever_arm"])),
         ("Weights estimated", _yes(settings["estimate_weights"])),
         ("Insignificant parameters dropped", _yes(settings["drop_insignificant"])),
         ("Robust", _yes(settings["robust"])),

@@ -69,6 +69,8 @@ def parameters(results: Results) -> Table:
         "Values are measured minus true; shifts are those at the first exposure of their scope. "
         "1 nrad/s is 0.000206°/h."
     ]
+    if rows(results, "cameras"):
+        notes.append("Principal distance and point: what is added to the stated ones, y upwards.")
     if any(row["prior_released"] for row in kept):
         notes.append(
             "Freed: the measurements contradict the prior value 0 with its standard deviation, so "
@@ -77,6 +79,29 @@ def parameters(results: Results) -> Table:
     strong = frozenset(k for k, row in enumerate(kept) if row["significant"])
     caption = "Additional parameters, with Student's t test against zero."
     return Table("parameters", caption, columns, tuple(notes), strong)
+
+
+def cameras(results: Results) -> Table:
+    """Stated and adjusted interior orientation."""
+    kept = rows(results, "cameras")
+    points = [[*row["stated_principal_point_px"], *row["principal_point_px"]] for row in kept]
+    columns = [text_column("Camera", [row["camera"] for row in kept])]
+    for offset, prefix, group in ((0, "stated_", "stated"), (2, "", "adjusted")):
+        distance = [row[f"{prefix}principal_distance_px"] for row in kept]
+        columns.append(_hundredths("Principal distance", distance, group))
+        for axis, title in enumerate(("Column", "Row")):
+            columns.append(_hundredths(title, [point[offset + axis] for point in points], group))
+    note = (
+        "The adjusted orientations belong to the adjusted camera. Standard deviations are those of "
+        "the parameters in the table above."
+    )
+    caption = "Principal distance and principal point of the cameras, in the terms of block.toml."
+    return Table("cameras", caption, tuple(columns), (note,))
+
+
+def _hundredths(title: str, values_px: Sequence[float], group: str) -> Column:
+    """Lengths of thousands of pixels, of which hundredths count."""
+    return Column(title, tuple(fmt.fixed(value, 2) for value in values_px), "px", group=group)
 
 
 def _scaled(kept: Sequence[Row], key: str, units: Sequence[fmt.Unit]) -> list[float | None]:

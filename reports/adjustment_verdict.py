@@ -134,7 +134,7 @@ def _open(results: Results) -> str:
     parts = []
     if parameters:
         words = list(_of_scopes(parameters))
-        parts.append(f"{fmt.joined(words)} ({'its' if len(words) == 1 else 'their'} prior holds)")
+        parts.append(f"{fmt.joined(words)}{_held(results, parameters)}")
     if images:
         count = "one image" if len(images) == 1 else f"{fmt.count(len(images))} images"
         parts.append(f"an angle of {count}")
@@ -142,6 +142,19 @@ def _open(results: Results) -> str:
     if apart:
         text += f" The block falls into {len(apart) + 1} parts that no point ties together."
     return text.strip()
+
+
+def _held(results: Results, found: list[Row]) -> str:
+    """What keeps open parameters near zero, where all of them have a prior."""
+    names = {(name, row["scope"]) for row in found for name in row["names"]}
+    priors = [
+        row["prior_sigma"]
+        for row in rows(results, "parameters")
+        if (row["name"], row["scope"]) in names and not row["prior_released"]
+    ]
+    if None in priors or len(priors) < len(names):
+        return ""
+    return f" ({'its' if len(names) == 1 else 'their'} prior holds)"
 
 
 def _of_scopes(found: list[Row]) -> Iterator[str]:

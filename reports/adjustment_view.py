@@ -51,6 +51,8 @@ def parameter_words(name: str) -> str:
         return f"boresight {rest}"
     if source == "lever":
         return f"lever arm {rest.rpartition('_')[2]}"
+    if source == "camera":
+        return "principal distance" if rest == "c" else f"principal point {rest}"
     return f"{source.capitalize()} {rest}"
 
 

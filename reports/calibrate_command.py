@@ -14,9 +14,7 @@ from . import format as fmt
 from .progress import progress_bar
 
 
-def calibrate_folder(
-    folder: Path, out: Path, settings: AdjustmentSettings, *, lever_arm: bool
-) -> Iterator[str]:
+def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> Iterator[str]:
     """Estimate the calibration of a block folder into the file `out`; yields what it is.
 
     Raises
@@ -28,7 +26,7 @@ def calibrate_folder(
         raise PosstatsError(f"{out} cannot be written: is it a file in a folder that exists?")
     with progress_bar("reading the block") as progress:
         adjustment = adjust_block(read_block(folder), settings, progress=progress)
-        calibration = calibrate(adjustment, lever_arm=lever_arm)
+        calibration = calibrate(adjustment)
     write_calibration(calibration, out)
     yield f"camera {calibration.camera}, from {calibration.n_images} images of {calibration.block}"
     yield from _described(calibration)

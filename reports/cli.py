@@ -153,6 +153,10 @@ def analyse(
     help="Image deformation.",
 )
 @click.option(
+    "--camera", is_flag=True, help="Principal distance and principal point are unknown too."
+)
+@click.option("--lever-arm", is_flag=True, help="The lever arm is unknown too.")
+@click.option(
     "--estimate-weights", is_flag=True, help="Estimate the accuracy of images, GNSS, IMU, control."
 )
 @click.option(
@@ -173,6 +177,8 @@ def adjust(
     control: str | None,
     drift: Literal["none", "block", "strip"],
     self_calibration: Literal["none", "bauer", "brown"],
+    camera: bool,
+    lever_arm: bool,
     estimate_weights: bool,
     drop_insignificant: bool,
     calibration: Path | None,
@@ -197,6 +203,8 @@ def adjust(
         control=control_choice(control),
         drift=drift,
         self_calibration=self_calibration,
+        camera=camera,
+        lever_arm=lever_arm,
         estimate_weights=estimate_weights,
         drop_insignificant=drop_insignificant,
         robust=robust,
@@ -245,8 +253,8 @@ def calibrate(
     from .adjust_command import control_choice
     from .calibrate_command import calibrate_folder
 
-    settings = AdjustmentSettings(control=control_choice(control), drift=drift)
-    for line in calibrate_folder(block, out, settings, lever_arm=lever_arm):
+    settings = AdjustmentSettings(control=control_choice(control), drift=drift, lever_arm=lever_arm)
+    for line in calibrate_folder(block, out, settings):
         click.echo(line)
 
 

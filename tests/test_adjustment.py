@@ -304,3 +304,30 @@ def test_image_residuals_of_the_real_block_are_as_long_as_known(marseille):
     residual = marseille.adjusted.residual_px[~marseille.adjusted.rejected]
     length_px = np.hypot(*residual.T)
     assert np.sqrt(np.mean(length_px**2)) == pytest.approx(0.2, abs=0.05)
+
+
+def test_an_unknown_camera_is_found_and_told_in_the_terms_of_the_block(block):
+    # the block states a principal distance 20 px too short, a principal point 6 px right, 4 px up
+    true = block.cameras[0]
+    column, row = true.principal_point_px
+    stated = replace(
+        true,
+        principal_distance_px=true.principal_distance_px - 20.0,
+        principal_point_px=(column + 6.0, row - 4.0),
+    )
+    ties = block.tie_points
+    wrong = replace(
+        block, cameras=(stated,), tie_points=replace(ties, xy_px=ties.xy_px - [6.0, 4.0])
+    )
+    adjustment = adjust_block(wrong, AdjustmentSettings(control="all", camera=True))
+    values = adjustment_results(adjustment)
+    (camera,) = values["cameras"]
+    sigma = {name: parameter(adjustment, name).sigma for name in ("camera_c", "camera_x0")}
+    assert sigma["camera_c"] < 3.0
+    assert sigma["camera_x0"] < 1.0
+    assert abs(camera["principal_distance_px"] - true.principal_distance_px) < (
+        4.0 * sigma["camera_c"]
+    )
+    found = np.array(camera["principal_point_px"]) - true.principal_point_px
+    assert (np.abs(found) < 4.0 * sigma["camera_x0"]).all()
+    assert values["settings"]["camera"]

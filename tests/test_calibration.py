@@ -87,8 +87,8 @@ def test_the_covariance_of_the_boresight_holds_the_scatter_of_flights():
 
 
 def test_a_lever_arm_is_estimated_on_request():
-    adjustment = adjust_block(flown(lever_arm_m=LEVER_ARM_M), AdjustmentSettings(drift="block"))
-    calibration = calibrate(adjustment, lever_arm=True)
+    settings = AdjustmentSettings(drift="block", lever_arm=True)
+    calibration = calibrate(adjust_block(flown(lever_arm_m=LEVER_ARM_M), settings))
     sigma = np.sqrt(np.diagonal(calibration.covariance))[3:]
     assert (np.abs(calibration.lever_arm_m - LEVER_ARM_M) < 3.0 * sigma).all()
     assert (sigma[:2] < 0.15).all()  # headings turn it, and not a shift of the GNSS

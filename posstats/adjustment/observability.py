@@ -87,6 +87,17 @@ _FAMILIES: tuple[tuple[tuple[str, ...], str, str], ...] = (
         "a lever arm shifts all antenna positions like a shift of the GNSS",
         "strips flown in opposite or crossing directions, and control points",
     ),
+    (
+        ("camera_c",),
+        "over flat ground the principal distance acts like the flying height",
+        "control points of different heights, or two flying heights",
+    ),
+    (
+        ("camera_x0", "camera_y0"),
+        "on strips flown in one direction the principal point acts like a boresight angle, or a"
+        " shift of the positions",
+        "strips flown in opposite or crossing directions, and control points",
+    ),
 )
 _CAMERA = (
     "the tie points do not show this deformation of the image apart from the other parameters",

@@ -13,11 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats import __version__
+from posstats.adjustment.check_points import camera_values
+from posstats.adjustment.settings import INTERIOR
 from posstats.adjustment.significance import HIGH_CORRELATION
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.steps import Adjustment
 from posstats.adjustment.weights import variance_factors
 from posstats.bundle.parameters import UNITS
+from posstats.bundle.rays import CAMERA_PARAMETERS
 from posstats.formats.adjusted_writing import write_adjusted, write_points
 from posstats.result_rows import accuracy_row, block_row, image_rows, residual_rows
 from posstats.results import plain, versions
@@ -77,6 +80,7 @@ def adjustment_results(adjustment: Adjustment, *, created: str | None = None) ->
                 for row in residual_rows(residuals)
             ],
             "control_points": list(_control_rows(adjustment)),
+            "cameras": list(_camera_rows(adjustment)),
             "orientations": list(_orientation_rows(adjustment)),
             "points": _points(adjustment),
             "images": image_rows(adjustment.block),
@@ -136,6 +140,8 @@ def _settings(adjustment: Adjustment) -> Row:
         "control": list(control) if isinstance(control, tuple) else control,
         "drift": settings.drift,
         "self_calibration": settings.self_calibration,
+        "camera": settings.camera,
+        "lever_arm": settings.lever_arm,
         "estimate_weights": settings.estimate_weights,
         "drop_insignificant": settings.drop_insignificant,
         "robust": settings.robust,
@@ -294,6 +300,23 @@ def _control_rows(adjustment: Adjustment) -> Iterator[Row]:
 def _largest(w: _Floats) -> float | None:
     known = w[np.isfinite(w)]
     return float(known[np.abs(known).argmax()]) if len(known) else None
+
+
+def _camera_rows(adjustment: Adjustment) -> Iterator[Row]:
+    """Stated and adjusted interior orientation of every camera, in the terms of block.toml."""
+    if not adjustment.settings.camera:
+        return
+    found = camera_values(adjustment.problem, adjustment.adjusted).value
+    for camera, values in zip(adjustment.block.cameras, found, strict=True):
+        c, x0, y0 = (values[CAMERA_PARAMETERS.index(name)] for name in INTERIOR)
+        column, row = camera.principal_point_px
+        yield {
+            "camera": camera.id,
+            "stated_principal_distance_px": camera.principal_distance_px,
+            "principal_distance_px": camera.principal_distance_px + c,
+            "stated_principal_point_px": (column, row),
+            "principal_point_px": (column + x0, row - y0),
+        }
 
 
 def _orientation_rows(adjustment: Adjustment) -> Iterator[Row]:

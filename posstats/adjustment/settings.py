@@ -14,6 +14,7 @@ from posstats.bundle.parameters import (
     GNSS_SHIFTS,
     IMU_DRIFTS,
     IMU_SHIFTS,
+    LEVER_ARM,
     CommonParameter,
     drift_parameters,
 )
@@ -27,6 +28,7 @@ _DEFORMATION: dict[SelfCalibration, tuple[str, ...]] = {
     "bauer": ("bauer_s1", "bauer_s2", "bauer_s3"),
     "brown": ("brown_k1", "brown_k2", "brown_k3", "brown_p1", "brown_p2"),
 }
+INTERIOR = ("camera_c", "camera_x0", "camera_y0")
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,8 @@ class DriftPriors:
         Of the IMU.
     boresight_rad
         The first source paper expects less than three degrees.
+    lever_arm_m
+        Of what the lever arm differs from the stated one.
     """
 
     shift_m: float | None = 0.3
@@ -48,6 +52,7 @@ class DriftPriors:
     shift_rad: float | None = float(np.radians(0.05))
     drift_rad_per_s: float | None = float(np.radians(0.005)) / 100.0
     boresight_rad: float | None = float(np.radians(1.0))
+    lever_arm_m: float | None = 1.0
 
 
 @dataclass(frozen=True)
@@ -63,10 +68,14 @@ class AdjustmentSettings:
         Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or each strip.
     self_calibration
         Image deformation: none, three parameters after Bauer, or five after Brown.
+    camera
+        Principal distance and principal point of every camera are unknown.
+    lever_arm
+        The lever arm is unknown.
     estimate_weights
         Estimate the variances of the groups of observations.
     drop_insignificant
-        Drop free parameters, and the boresight, where they are not significant, one by one.
+        Drop free parameters, boresight and lever arm, where they are not significant, one by one.
     robust
         Reject blunders among the rays before data snooping.
     priors
@@ -78,6 +87,8 @@ class AdjustmentSettings:
     control: ControlChoice = "roles"
     drift: DriftScope = "block"
     self_calibration: SelfCalibration = "none"
+    camera: bool = False
+    lever_arm: bool = False
     estimate_weights: bool = False
     drop_insignificant: bool = False
     robust: bool = True
@@ -109,7 +120,12 @@ def additional_parameters(
     PosstatsError
         If Bauer's parameters, which count in mm, are wanted of a camera without pixel size.
     """
-    return (*_pos_parameters(block, settings), *_deformation(block, settings.self_calibration))
+    arm = LEVER_ARM if settings.lever_arm else ()
+    return (
+        *_pos_parameters(block, settings),
+        *drift_parameters(arm, (BLOCK,), settings.priors.lever_arm_m),
+        *_image_parameters(block, settings),
+    )
 
 
 def _pos_parameters(block: Block, settings: AdjustmentSettings) -> tuple[CommonParameter, ...]:
@@ -129,8 +145,9 @@ def _pos_parameters(block: Block, settings: AdjustmentSettings) -> tuple[CommonP
     )
 
 
-def _deformation(block: Block, model: SelfCalibration) -> tuple[CommonParameter, ...]:
-    """Free parameters of every camera."""
+def _image_parameters(block: Block, settings: AdjustmentSettings) -> tuple[CommonParameter, ...]:
+    """Free parameters of every camera: interior orientation and deformation."""
+    model = settings.self_calibration
     if model == "bauer" and any(camera.pixel_size_mm is None for camera in block.cameras):
         raise PosstatsError(
             "self-calibration after Bauer counts in mm: it needs the pixel size of the camera"
@@ -138,4 +155,5 @@ def _deformation(block: Block, model: SelfCalibration) -> tuple[CommonParameter,
         )
     several = len(block.cameras) > 1
     scopes = [camera.id for camera in block.cameras] if several else [BLOCK]
-    return drift_parameters(_DEFORMATION[model], scopes)
+    interior = INTERIOR if settings.camera else ()
+    return drift_parameters((*interior, *_DEFORMATION[model]), scopes)
