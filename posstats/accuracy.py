@@ -33,6 +33,8 @@ class CheckPointResiduals:
     sigma_m
         (g, 3) standard deviations of the differences: image noise, stated accuracy of the
         orientations (independent between images) and of the survey, where that is stated.
+    survey_sigma_m
+        (g, 2) horizontal (of X and of Y) and vertical of the survey; NaN where not stated.
     n_rays
         (g,) rays used.
     rms_px
@@ -46,6 +48,7 @@ class CheckPointResiduals:
     given_m: _Floats
     difference_m: _Floats
     sigma_m: _Floats
+    survey_sigma_m: _Floats
     n_rays: _Ints
     rms_px: _Floats
     status: _Ids
@@ -152,6 +155,7 @@ def differences(
         given_m=given_m,
         difference_m=_to_crs(block, computed) - given_m,
         sigma_m=np.sqrt(variance + _survey_variance(given)),
+        survey_sigma_m=np.column_stack([given.sigma_xy_m, given.sigma_z_m]),
         n_rays=computed.n_rays,
         rms_px=computed.rms_px,
         status=computed.status,

@@ -121,6 +121,8 @@ class Analysis:
     corrected_orientations, corrected_px
         By "omega", "phi", "kappa" (the line of each angle alone, ground frame) and "selected":
         orientations, and (p,) RMS y-parallax of the models.
+    triangulated_px
+        The same from "adjusted" if the block has it, and from "bundle" if it was made.
     check_points
         Residuals of "pos", of every correction, of "adjusted" if the block has it, and of "bundle"
         if it was made.
@@ -140,6 +142,7 @@ class Analysis:
     frame_reason: str | None
     corrected_orientations: dict[str, Orientations]
     corrected_px: dict[str, _Floats]
+    triangulated_px: dict[str, _Floats]
     check_points: tuple[CheckPointResiduals, ...]
     bundle: ImuFreeBundle | None = None
 
@@ -195,10 +198,8 @@ def analyse(
         chosen=chosen,
         frame_reason=frame_reason,
         corrected_orientations=orientations,
-        corrected_px={
-            name: model_rms_px(models.with_orientations(each))
-            for name, each in orientations.items()
-        },
+        corrected_px=_parallax(models, orientations),
+        triangulated_px=_parallax(models, _triangulated(block, bundle)),
         check_points=_check_points(block, orientations, bundle),
         bundle=bundle,
     )
@@ -292,6 +293,18 @@ def _line_of(
         and (each.scope == BLOCK_SCOPE) == (scope == "block")
         and each.ols is not None
     )
+
+
+def _triangulated(block: Block, bundle: ImuFreeBundle | None) -> dict[str, Orientations]:
+    found = {} if block.adjusted is None else {"adjusted": block.adjusted}
+    return found if bundle is None else found | {"bundle": bundle.orientations}
+
+
+def _parallax(models: StereoModels, orientations: dict[str, Orientations]) -> dict[str, _Floats]:
+    """(p,) RMS y-parallax of the models, px, from each of some orientations."""
+    return {
+        name: model_rms_px(models.with_orientations(each)) for name, each in orientations.items()
+    }
 
 
 def _check_points(

@@ -122,10 +122,16 @@ def model_rows(analysis: Analysis) -> list[Row]:
             "independent_px": independent.y_parallax_rms_px[k],
             "dependent_px": dependent.y_parallax_rms_px[k],
             "corrected_px": analysis.corrected_px["selected"][k],
+            "adjusted_px": _of_model(analysis.triangulated_px.get("adjusted"), k),
+            "bundle_px": _of_model(analysis.triangulated_px.get("bundle"), k),
             "status": independent.status[k],
         }
         for k in range(len(models))
     ]
+
+
+def _of_model(rms_px: _Floats | None, k: int) -> float | None:
+    return None if rms_px is None else float(rms_px[k])
 
 
 def error_source_rows(analysis: Analysis) -> list[Row]:
@@ -324,6 +330,8 @@ def residual_rows(residuals: CheckPointResiduals) -> Iterator[Row]:
             "point": residuals.point[k],
             "n_rays": residuals.n_rays[k],
             "status": residuals.status[k],
+            "survey_sigma_xy_m": residuals.survey_sigma_m[k, 0],
+            "survey_sigma_z_m": residuals.survey_sigma_m[k, 1],
         } | {
             key: value
             for axis, name in enumerate("xyz")

@@ -25,6 +25,7 @@ def _residuals(difference_m, status=None):
         given_m=np.zeros((g, 3)),
         difference_m=difference,
         sigma_m=np.ones((g, 3)),
+        survey_sigma_m=np.full((g, 2), np.nan),
         n_rays=np.full(g, 3),
         rms_px=np.zeros(g),
         status=np.array(status or ["ok"] * g, dtype=object),

@@ -239,3 +239,24 @@ def test_models_of_too_few_points_are_listed_without_a_value():
     few = [row for row in values["models"] if row["n_points"] < 6]
     assert few
     assert {row["status"] for row in few} == {"fewer than 6 points"}
+
+
+def test_models_of_images_without_adjusted_orientation_have_no_adjusted_parallax(block):
+    angles = block.adjusted.angles_rad.copy()
+    angles[0] = np.nan
+    partial = replace(block, adjusted=replace(block.adjusted, angles_rad=angles))
+    analysis = analyse(partial)
+    rows = results(analysis)["models"]
+    first = block.orientations.image[0]
+    missing = [row for row in rows if first in (row["left"], row["right"])]
+    others = [row["adjusted_px"] for row in rows if row not in missing]
+    assert [row["adjusted_px"] for row in missing] == [None] * len(missing)
+    # the true orientations leave the image noise: a little over 0.2 px in y of either image
+    assert 0.2 < np.mean(others) < 0.5
+    assert {row["bundle_px"] for row in rows} == {None}
+
+
+def test_survey_accuracy_stands_beside_every_check_point(analysis):
+    points = results(analysis)["check_point_residuals"]
+    assert points
+    assert all(row["survey_sigma_xy_m"] > 0.0 and row["survey_sigma_z_m"] > 0.0 for row in points)
