@@ -14,10 +14,14 @@ degrees of freedom (W. R. Thompson, same journal 6 (1935), 214-219). So, with p1
 This is exact where no two residuals can be as large as G together, 2 G^2 > n - 1 (two squares
 stay below the sum of all, (n - 1) s^2): at 5 % for up to 13 points. Elsewhere it is Bonferroni's
 bound, above the exact value by the expected number of pairs beyond G at most, which is below
-p^2 / 2: the size of the test at 5 % lies between 4.87 % and 5 % (simulated for 20 to 300 points
-in tests). The components of a point may be correlated; over k components the p-values are
-adjusted by S. Holm's method (Scandinavian Journal of Statistics 6 (1979), 65-70), which holds
-for any dependence.
+p^2 / 2: the size of the test at 5 % lies between 4.87 % and 5 %.
+
+Where all but one difference are equal, as rounding to the millimetre makes two of three, G is the
+largest there is and p = 0: the null hypothesis knows no equal values.
+
+The components of a point may be correlated; over k components the p-values are adjusted by
+S. Holm's method (Scandinavian Journal of Statistics 6 (1979), 65-70), which holds for any
+dependence.
 """
 
 import math
