@@ -1,0 +1,1 @@
+"""Acceptance: standards and contracts as data, and what check points prove."""
