@@ -360,6 +360,27 @@ def check(block: Path) -> None:
         click.echo(line)
 
 
+@cli.command()
+@click.argument("name", required=False)
+@_clear_errors
+def profiles(name: str | None) -> None:
+    """List the acceptance profiles, or print the profile NAME with its sources.
+
+    NAME may also be a contract or profile file, which is validated: exit code 1 with the findings
+    if it is refused.
+
+    \b
+    Example:
+      posstats profiles
+      posstats profiles asprs-2024
+      posstats profiles contract.toml
+    """
+    from .profiles_command import describe_profile, list_profiles
+
+    for line in list_profiles() if name is None else describe_profile(name):
+        click.echo(line)
+
+
 def _default_out(block: Path) -> Path:
     return Path("out") / block.resolve().name
 

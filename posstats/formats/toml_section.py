@@ -1,4 +1,4 @@
-"""One section of block.toml: typed reading of its keys, findings with line and key."""
+"""One section of a TOML file: typed reading of its keys, findings with line and key."""
 
 import math
 import re
@@ -11,11 +11,15 @@ FILE = "block.toml"
 _LARGEST = 1e9
 _SMALLEST = 1e-9
 """Sizes beyond these (m, px, degrees) are slips of the pen, and would overflow as weights."""
+_SHOWN = 120
 
 
 @dataclass
 class TomlSection:
-    """One table of block.toml; its readers add what is wrong to `findings`."""
+    """One table of a TOML file; its readers add what is wrong to `findings`.
+
+    The keys above the first section have the name "".
+    """
 
     values: Any
     name: str
@@ -23,17 +27,22 @@ class TomlSection:
     findings: list[str]
     occurrence: int = 0
     parent_key: str | None = None
+    file: str = FILE
 
     def __post_init__(self) -> None:
         if not isinstance(self.values, dict):
-            self.findings.append(f"{FILE}, {self.name}: found {self.values!r}, expected a section")
+            found = shown(self.values)
+            self.findings.append(f"{self.file}, {self.name}: found {found}, expected a section")
             self.values = {}
 
     def refuse(self, key: str, what: str) -> None:
         """A finding about a key, with the line it stands on."""
-        line = _line_of_key(self.source, self.name, self.occurrence, self.parent_key or key)
-        shown = key if self.parent_key is None else f"{self.parent_key}.{key}"
-        self.findings.append(f"{FILE}{line}, {self.name}.{shown}: {what}")
+        if self.name:
+            line = _line_of_key(self.source, self.name, self.occurrence, self.parent_key or key)
+        else:
+            line = line_of_section(self.source, key)
+        path = ".".join(part for part in (self.name, self.parent_key, shortened(key)) if part)
+        self.findings.append(f"{self.file}{line}, {path}: {what}")
 
     def refuse_unknown(self, known: tuple[str, ...]) -> None:
         """A finding for every key that is not `known`."""
@@ -46,14 +55,14 @@ class TomlSection:
         value = self.values.get(key)
         if value is None or (isinstance(value, str) and value):
             return value
-        self.refuse(key, f"found {value!r}, expected text in quotes")
+        self.refuse(key, f"found {shown(value)}, expected text in quotes")
         return None
 
     def flag(self, key: str) -> bool:
         """A truth value, false if absent."""
         value = self.values.get(key, False)
         if not isinstance(value, bool):
-            self.refuse(key, f"found {value!r}, expected true or false")
+            self.refuse(key, f"found {shown(value)}, expected true or false")
         return value is True
 
     def choice(self, key: str, known: tuple[str, ...], default: str | None = None) -> str:
@@ -61,7 +70,7 @@ class TomlSection:
         value = self.values.get(key, default)
         if value in known:
             return cast(str, value)
-        found = "nothing" if value is None else repr(value)
+        found = "nothing" if value is None else shown(value)
         self.refuse(key, f"found {found}, expected {' or '.join(known)}")
         return known[0]
 
@@ -70,7 +79,7 @@ class TomlSection:
         value = self.values.get(key)
         if value is None or _is_number(value):
             return None if value is None else float(value)
-        self.refuse(key, f"found {value!r}, expected a finite number{_too_large(value)}")
+        self.refuse(key, f"found {shown(value)}, expected a finite number{_too_large(value)}")
         return None
 
     def positive(self, key: str, required: bool = False) -> float | None:
@@ -78,7 +87,7 @@ class TomlSection:
         value = self.values.get(key)
         if (value is None and not required) or (_is_number(value) and value >= _SMALLEST):
             return None if value is None else float(value)
-        found = "nothing" if value is None else repr(value)
+        found = "nothing" if value is None else shown(value)
         too_small = f" of at least {_SMALLEST:g}" if _is_number(value) and value > 0 else ""
         self.refuse(key, f"found {found}, expected a positive number{too_small}{_too_large(value)}")
         return None
@@ -90,7 +99,7 @@ class TomlSection:
             return default
         if isinstance(value, list) and len(value) == count and all(map(_is_number, value)):
             return tuple(float(number) for number in value)
-        self.refuse(key, f"found {value!r}, expected {count} finite numbers in brackets")
+        self.refuse(key, f"found {shown(value)}, expected {count} finite numbers in brackets")
         return default
 
 
@@ -126,6 +135,19 @@ def _line_of_key(text: str, section: str, number: int, key: str) -> str:
         elif inside and assignment.match(content):
             return f":{line}"
     return start
+
+
+def shown(value: object) -> str:
+    """A value as it is shown in a finding: of a long one its beginning."""
+    try:
+        return shortened(repr(value))
+    except ValueError:  # of a whole number with more digits than Python writes
+        return "a number of thousands of digits"
+
+
+def shortened(text: str) -> str:
+    """A text of at most 120 characters: of a longer one its beginning."""
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -1,0 +1,70 @@
+"""What a delivered product is stated to be: the values that limits are functions of."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
+from typing import Literal
+
+Terrain = Literal["flat", "mountain"]
+
+FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
+    {
+        "class_h": "class_h_m",
+        "class_v": "class_v_m",
+        "gsd": "gsd_m",
+        "scale": "map_scale",
+        "lot": "lot_size",
+    }
+)
+"""Name in a formula -> attribute of the product."""
+
+TERRAIN = "terrain"
+GIVEN_NAMES = (*FORMULA_NAMES, TERRAIN)
+"""Names by which a profile asks whether the product states something."""
+
+
+@dataclass(frozen=True)
+class Product:
+    """The product as contract or customer state it; None where nothing is stated.
+
+    Attributes
+    ----------
+    class_h_m, class_v_m
+        Accuracy class, m: the horizontal (radial) and the vertical RMSE that is to be met.
+    gsd_m
+        Ground sampling distance, m.
+    map_scale
+        Denominator of the map scale.
+    terrain
+        "flat" (and hilly) or "mountain".
+    lot_size, sample_size
+        Units that were delivered together, and those of them that were inspected.
+    survey_sigma_h_m, survey_sigma_v_m
+        Accuracy of the check points' survey, m: radial horizontal, and vertical.
+    """
+
+    class_h_m: float | None = None
+    class_v_m: float | None = None
+    gsd_m: float | None = None
+    map_scale: float | None = None
+    terrain: Terrain | None = None
+    lot_size: int | None = None
+    sample_size: int | None = None
+    survey_sigma_h_m: float | None = None
+    survey_sigma_v_m: float | None = None
+
+    def value(self, name: str) -> float | None:
+        """The value that a formula's name stands for, None if the product states none."""
+        value: float | None = getattr(self, FORMULA_NAMES[name])
+        return value
+
+    def states(self, name: str) -> bool:
+        """Whether the product states what `name` (one of `GIVEN_NAMES`) stands for."""
+        if name == TERRAIN:
+            return self.terrain is not None
+        return self.value(name) is not None
+
+    def updated(self, other: "Product") -> "Product":
+        """The same product, with what `other` states in place of its own."""
+        given = {each.name: getattr(other, each.name) for each in fields(other)}
+        return replace(self, **{name: v for name, v in given.items() if v is not None})
