@@ -9,6 +9,7 @@ drifts of the IMU.
 
 import argparse
 import multiprocessing
+import os
 import pickle
 import resource
 import statistics
@@ -17,6 +18,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, before NumPy is there
 
 import numpy as np
 

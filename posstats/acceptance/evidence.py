@@ -1,0 +1,194 @@
+"""What results.json holds about one orientation: the evidence that requirements are held against.
+
+The mean shift of the check points is kept everywhere: a shift estimated from the points that
+judge a product would flatter it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from posstats.acceptance.product import Product
+from posstats.errors import PosstatsError
+
+_Floats = NDArray[np.float64]
+Results = Mapping[str, Any]
+Row = Mapping[str, Any]
+
+ORIENTATIONS = ("bundle", "adjusted", "selected", "pos")
+"""What can be assessed; without a choice the first that the results hold. The order is that of
+what entered the orientation, never that of the outcome at the check points."""
+
+_PARALLAX = {
+    "pos": "pos_px",
+    "selected": "corrected_px",
+    "adjusted": "adjusted_px",
+    "bundle": "bundle_px",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """n check points and p stereo models of one orientation.
+
+    Attributes
+    ----------
+    orientation
+        One of `ORIENTATIONS`.
+    point
+        (n,) ids of the check points that were intersected.
+    difference_m
+        (n, 3) computed minus given, crs axes.
+    survey_h_m, survey_v_m
+        (n,) accuracy of their survey: radial horizontal, vertical; NaN where nobody states it.
+    n_given
+        Check points of the block, intersected or not.
+    quadrant_share
+        Smallest share of the n points in a quadrant of the block; NaN without points or plan.
+    parallax_px
+        (p,) RMS y-parallax of the models from this orientation.
+    image_rms_px, sigma0
+        Of the bundle adjustment that the orientation comes from; NaN for others.
+    drift_p
+        Smallest of the p-values, after Holm, of drifts that were not taken off, null hypothesis: no
+        drift; 1 if every one was taken off; NaN where they are not known.
+    """
+
+    orientation: str
+    point: tuple[str, ...]
+    difference_m: _Floats
+    survey_h_m: _Floats
+    survey_v_m: _Floats
+    n_given: int
+    quadrant_share: float
+    parallax_px: _Floats
+    image_rms_px: float
+    sigma0: float
+    drift_p: float
+
+    def __len__(self) -> int:
+        return len(self.point)
+
+
+def best_orientation(results: Results) -> str:
+    """The first of `ORIENTATIONS` that the results hold.
+
+    Raises
+    ------
+    PosstatsError
+        If they hold none.
+    """
+    held = _held(results)
+    if not held:
+        raise PosstatsError("the results hold no orientation that could be assessed")
+    return held[0]
+
+
+def _held(results: Results) -> list[str]:
+    named = {row["orientation"] for row in results["check_points"]}
+    return [name for name in ORIENTATIONS if name in named]
+
+
+def evidence(results: Results, orientation: str, product: Product) -> Evidence:
+    """Collect the evidence.
+
+    Parameters
+    ----------
+    results
+        The dictionary of results.json.
+    orientation
+        One of `ORIENTATIONS`.
+    product
+        Its accuracy of the survey stands in where the block states none.
+
+    Raises
+    ------
+    PosstatsError
+        If the results do not hold the orientation.
+    """
+    held = _held(results)
+    if orientation not in held:
+        raise PosstatsError(
+            f"the results hold no orientation {orientation}: choose one of {', '.join(held)}"
+        )
+    rows = [r for r in results["check_point_residuals"] if r["orientation"] == orientation]
+    good = [row for row in rows if row["status"] == "ok"]
+    survey_h, survey_v = _survey(good, product)
+    bundle = (results.get("bundle") or {}) if orientation == "bundle" else {}
+    return Evidence(
+        orientation=orientation,
+        point=tuple(str(row["point"]) for row in good),
+        difference_m=_columns(good, ("dx_m", "dy_m", "dz_m")),
+        survey_h_m=survey_h,
+        survey_v_m=survey_v,
+        n_given=len(rows),
+        quadrant_share=_quadrant_share(results["images"], good),
+        parallax_px=_parallax(results["models"], _PARALLAX[orientation]),
+        image_rms_px=_number(bundle.get("image_rms_px")),
+        sigma0=_number(bundle.get("sigma0")),
+        drift_p=_remaining_drift(results, orientation),
+    )
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _columns(rows: Sequence[Row], names: Sequence[str]) -> _Floats:
+    """(n, k), NaN where null."""
+    values = [[_number(row.get(name)) for name in names] for row in rows]
+    return np.array(values, dtype=float).reshape(len(rows), len(names))
+
+
+def _survey(rows: Sequence[Row], product: Product) -> tuple[_Floats, _Floats]:
+    """(n,) radial horizontal and vertical; sigma_xy is that of X and of Y."""
+    stated = _columns(rows, ("survey_sigma_xy_m", "survey_sigma_z_m"))
+    horizontal, vertical = np.sqrt(2.0) * stated[:, 0], stated[:, 1]
+    return (
+        np.where(np.isnan(horizontal), _number(product.survey_sigma_h_m), horizontal),
+        np.where(np.isnan(vertical), _number(product.survey_sigma_v_m), vertical),
+    )
+
+
+def _quadrant_share(images: Sequence[Row], points: Sequence[Row]) -> float:
+    """Quadrants of the rectangle, along the crs axes, around the ground that the images show."""
+    corners = [corner for row in images for corner in row.get("footprint") or ()]
+    if not corners or not points:
+        return float("nan")
+    plan = np.array(corners, dtype=float)
+    middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
+    east, north = (_columns(points, ("x_m", "y_m")) > middle).T
+    counts = np.bincount(2 * east + north, minlength=4)
+    return float(counts.min() / len(points))
+
+
+def _parallax(models: Sequence[Row], key: str) -> _Floats:
+    numbers = (_number(row.get(key)) for row in models)
+    return np.array([number for number in numbers if np.isfinite(number)], dtype=float)
+
+
+def _remaining_drift(results: Results, orientation: str) -> float:
+    if orientation == "pos":
+        tested = [("ground", angle, "block") for angle in ("omega", "phi", "kappa")]
+    elif orientation == "selected":
+        tested = [
+            (row["frame"], row["angle"], row["scope"])
+            for row in results["selection"]
+            if row["form"] != "linear"
+        ]
+    else:
+        return float("nan")
+    fits = {(row["frame"], row["angle"], row["scope"]): row for row in results["regression"]}
+    p = [_drift_p(fits[each]) for each in tested if each in fits]
+    if len(p) < len(tested) or any(np.isnan(p)):
+        return float("nan")
+    return min(1.0, len(p) * min(p)) if p else 1.0
+
+
+def _drift_p(fit: Row) -> float:
+    """Of GLS, which is honest about correlated errors; of OLS where errors have no covariance."""
+    honest = _number(fit.get("gls_p_value"))
+    return _number(fit.get("p_value")) if np.isnan(honest) else honest

@@ -1,0 +1,28 @@
+"""Why a requirement was judged as it was: a code and its values; the words are the reports'."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from posstats.errors import PosstatsError
+
+Value = float | int | str | None
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A reason by its code.
+
+    `within`, `exceeds`, `investigate` (found, limit); `no check points`; `survey accuracy not
+    stated`; `product value missing` (name); `quantity not available`; `nssda ratio` (ratio).
+    """
+
+    code: str
+    values: Mapping[str, Value] = field(default_factory=dict)
+
+
+class Unavailable(PosstatsError):  # noqa: N818 - no fault: the evidence does not say
+    """A quantity that the evidence does not give, for the `reason`."""
+
+    def __init__(self, reason: Reason) -> None:
+        self.reason = reason
+        super().__init__(reason.code)
