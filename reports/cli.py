@@ -360,6 +360,122 @@ def check(block: Path) -> None:
         click.echo(line)
 
 
+class _Length(click.ParamType):
+    """A length with its unit, read as metres."""
+
+    name = "length"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        from .accept_command import length_m
+
+        if isinstance(value, float):
+            return value
+        try:
+            return length_m(value)
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+
+LENGTH = _Length()
+
+
+@cli.command()
+@click.argument("source", type=FOLDER, metavar="BLOCK|results.json")
+@click.option("--profile", metavar="NAME|FILE", help="Profile to judge by: see posstats profiles.")
+@click.option(
+    "--contract",
+    type=FOLDER,
+    metavar="FILE",
+    help="Contract (TOML): parties, product, and limits of its own that extend a profile.",
+)
+@click.option(
+    "--class",
+    "class_both",
+    type=LENGTH,
+    metavar="LENGTH",
+    help="Accuracy class of the product, horizontal and vertical, such as 10cm.",
+)
+@click.option("--class-h", type=LENGTH, metavar="LENGTH", help="Horizontal accuracy class.")
+@click.option("--class-v", type=LENGTH, metavar="LENGTH", help="Vertical accuracy class.")
+@click.option("--gsd", type=LENGTH, metavar="LENGTH", help="Ground sampling distance.")
+@click.option("--scale", type=click.FloatRange(1), metavar="N", help="Map scale 1:N, such as 5000.")
+@click.option("--terrain", type=click.Choice(["flat", "mountain"]), help="Kind of terrain.")
+@click.option(
+    "--orientation",
+    type=click.Choice(["pos", "selected", "adjusted", "bundle"]),
+    help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
+    "results hold]",
+)
+@click.option(
+    "--language",
+    type=click.Choice(["en", "zh"]),
+    default="en",
+    show_default=True,
+    help="Of the document.",
+)
+@click.option(
+    "--templates",
+    type=FOLDER,
+    metavar="DIR",
+    help="Folder with a logo, a letterhead or other templates of yours.",
+)
+@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@click.option("--no-pdf", is_flag=True, help="Write the document as HTML only.")
+@click.pass_context
+@_clear_errors
+def accept(
+    context: click.Context,
+    source: Path,
+    profile: str | None,
+    contract: Path | None,
+    class_both: float | None,
+    class_h: float | None,
+    class_v: float | None,
+    gsd: float | None,
+    scale: float | None,
+    terrain: Literal["flat", "mountain"] | None,
+    orientation: str | None,
+    language: str,
+    templates: Path | None,
+    out: Path | None,
+    no_pdf: bool,
+) -> None:
+    """Judge a block, or its results.json, by a standard or contract, and certify the verdict.
+
+    Writes acceptance.html, acceptance.pdf (for the archive, with all data inside) and
+    acceptance.json. Files of the same names are replaced. Exit code 0: accepted; 3: rejected;
+    4: not assessable; 1: an error.
+
+    \b
+    Example:
+      posstats accept flight7 --profile asprs-2024 --class 10cm
+      posstats accept report/results.json --contract contract.toml --language zh
+    """
+    from posstats.acceptance.product import Product
+
+    from .accept_command import EXIT_CODES, Wish, judge
+
+    if class_both is not None and (class_h is not None or class_v is not None):
+        raise click.UsageError("give either --class, or --class-h and --class-v")
+    product = Product(
+        class_h_m=class_both or class_h,
+        class_v_m=class_both or class_v,
+        gsd_m=gsd,
+        map_scale=scale,
+        terrain=terrain,
+    )
+    wish = Wish(profile, contract, product, orientation, language, templates)
+    verdict, lines = judge(source, out or _default_out(_block_of(source)), wish, pdf=not no_pdf)
+    for line in lines:
+        click.echo(line)
+    context.exit(EXIT_CODES[verdict])
+
+
+def _block_of(source: Path) -> Path:
+    """The block folder, or the folder of a results.json: what an output folder is named after."""
+    return source if source.is_dir() else source.resolve().parent
+
+
 @cli.command()
 @click.argument("name", required=False)
 @_clear_errors

@@ -6,9 +6,11 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+Advance = Callable[[str, float], None]
+
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[str, float], None]]:
+def progress_bar(title: str) -> Iterator[Advance]:
     """Callable(step, share done 0..1) that draws on standard error if that is a terminal."""
     console = Console(stderr=True)
     columns = (

@@ -28,6 +28,7 @@ Results = Mapping[str, Any]
 
 SCHEMA = "posstats-acceptance/1"
 _AXES = ("x", "y", "z")
+_VERSIONS = ("posstats_version", "versions")
 
 
 @dataclass(frozen=True)
@@ -100,8 +101,9 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
 
 
 def document_id(values: Mapping[str, Any]) -> str:
-    """Sixteen hexadecimal digits of the SHA-256 of all that the document says."""
-    text = json.dumps(values, sort_keys=True, ensure_ascii=False)
+    """Sixteen hexadecimal digits of the SHA-256 of what the document says, its versions apart."""
+    said = {key: value for key, value in values.items() if key not in _VERSIONS}
+    text = json.dumps(said, sort_keys=True, ensure_ascii=False)
     digest = hashlib.sha256(text.encode("utf-8")).hexdigest()[:16].upper()
     return "PA-" + "-".join(digest[k : k + 4] for k in range(0, 16, 4))
 

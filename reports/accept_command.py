@@ -1,0 +1,157 @@
+"""`posstats accept`: from a block or its results to the acceptance document."""
+
+import json
+import re
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from posstats.acceptance.product import Product
+from posstats.acceptance.profile import Contract, Profile
+from posstats.acceptance.profile_files import load_contract
+from posstats.analysis import Settings, analyse
+from posstats.block_io import read_block
+from posstats.errors import PosstatsError
+from posstats.results import SCHEMA, results, to_json
+
+from .acceptance_data import Demand, assembled, embedded
+from .acceptance_writing import read_templates, write_document
+from .output import staged_folder
+from .progress import Advance, progress_bar
+from .summary import WIDTH
+from .timestamp import now
+
+BLOCK_TOML = "block.toml"
+EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}
+_LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*(mm|cm|m)\s*")
+_METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
+_LARGEST_RESULTS = 500_000_000
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a user asks for, as on the command line; None: not given."""
+
+    profile: str | None
+    contract: Path | None
+    product: Product
+    orientation: str | None
+    language: str
+    templates: Path | None
+
+
+def length_m(text: str) -> float:
+    """A length with its unit, in metres: ``10cm``.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or zero.
+    """
+    match = _LENGTH.fullmatch(text)
+    if match is None or float(match[1]) == 0.0:
+        raise ValueError(f"{text!r} is no length: write 10cm, 100mm or 0.1m")
+    return round(float(match[1]) * _METRES[match[2]], 9)
+
+
+def judge(source: Path, out: Path, wish: Wish, *, pdf: bool = True) -> tuple[str, list[str]]:
+    """Judge a block folder or a results.json, and write the document into `out`.
+
+    Returns
+    -------
+    The verdict (a key of `EXIT_CODES`), and the lines of the terminal summary.
+
+    Raises
+    ------
+    PosstatsError
+        If profile, contract, product, results or templates cannot be used.
+    """
+    profile, contract = _profile_and_contract(wish)
+    product = contract.product.updated(wish.product)
+    demand = Demand(profile, contract, product, wish.orientation, wish.language)
+    templates = {} if wish.templates is None else read_templates(wish.templates)
+    with staged_folder(out, replaced=("acceptance.pdf",)) as stage, progress_bar("reading") as bar:
+        values, text, sources = _results(source, wish.orientation, bar)
+        bar("assessment", 0.7)
+        sources |= {f"templates/{name}": content for name, content in templates.items()}
+        files = embedded(values, text, demand, sources)
+        acceptance = assembled(values, demand, files, now())
+        bar("writing the document", 0.75)
+        missing = write_document(acceptance, values, templates, files, stage, pdf=pdf)
+    written = ["acceptance.html"] + (["acceptance.pdf"] if pdf and not missing else [])
+    lines = [*_summary(acceptance), "", *([missing] if missing else [])]
+    lines.append(f"document: {', '.join(str(out / name) for name in written)}")
+    return acceptance["verdict"], lines
+
+
+def _profile_and_contract(wish: Wish) -> tuple[Profile, Contract]:
+    """Of the contract file, which may extend the profile; or of the profile alone."""
+    first = wish.contract or wish.profile
+    if first is None:
+        raise PosstatsError(
+            "give a profile (--profile, see posstats profiles) or a contract file (--contract)"
+        )
+    profile, contract = load_contract(first, base=wish.profile if wish.contract else None)
+    if profile is None:
+        raise PosstatsError(
+            f"{first} has no requirement: let it extend a profile, or name one with --profile"
+        )
+    return profile, contract
+
+
+def _results(
+    source: Path, orientation: str | None, bar: Advance
+) -> tuple[dict[str, Any], bytes, dict[str, bytes]]:
+    """Results, their text, and the block.toml that they come from where the block is given."""
+    if not source.is_dir():
+        values, text = _read_results(source)
+        return values, text, {}
+    block = read_block(source)
+    settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
+    analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
+    values = results(analysis, created=now())
+    text = to_json(values).encode("utf-8")
+    return values, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
+
+
+def _read_results(path: Path) -> tuple[dict[str, Any], bytes]:
+    """A results.json.
+
+    Raises
+    ------
+    PosstatsError
+        If it is something else.
+    """
+    if path.stat().st_size > _LARGEST_RESULTS:
+        raise PosstatsError(f"{path}: more than {_LARGEST_RESULTS // 1_000_000} MB are not read")
+    text = path.read_bytes()
+    try:
+        values = json.loads(text)
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise PosstatsError(f"{path} is no results.json: {error}") from error
+    if not isinstance(values, dict) or values.get("schema") != SCHEMA:
+        raise PosstatsError(
+            f"{path} is no results.json of posstats analyse: its schema is not {SCHEMA}"
+        )
+    return values, text
+
+
+def _summary(acceptance: dict[str, Any]) -> Iterator[str]:
+    """Verdict, requirements and statement, as lines of text."""
+    block = acceptance["block"]
+    simulated = " (simulated)" if block["simulated"] else ""
+    yield f"{acceptance['verdict'].upper()}: {block['name']}{simulated}"
+    profile = acceptance["profile"]
+    yield (
+        f"against {profile['name']} ({profile['edition']}), orientation "
+        f"{acceptance['orientation']}, document {acceptance['document_id']}"
+    )
+    yield ""
+    for row in acceptance["requirements"]:
+        line = f"{row['verdict']:12}  {row['id']}: {row['reason']}"
+        yield from textwrap.wrap(line, WIDTH, subsequent_indent=" " * 14)
+    if acceptance["statement"]:
+        yield ""
+        yield from textwrap.wrap(acceptance["statement"], WIDTH)

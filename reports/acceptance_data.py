@@ -1,0 +1,183 @@
+"""acceptance.json: the assessment with its words, and the files that the document embeds."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from posstats.acceptance.assessment import Assessment, ChosenStatement, assess
+from posstats.acceptance.evidence import best_orientation, evidence
+from posstats.acceptance.product import Product
+from posstats.acceptance.profile import Contract, Profile, ProfileFile
+from posstats.acceptance.profile_files import profile_of_files
+from posstats.acceptance.reasons import Reason
+from posstats.acceptance.values import Occasion, acceptance_values, document_id
+from posstats.errors import PosstatsError
+
+from . import acceptance_words, tables
+from . import format as fmt
+from .archive_pdf import Attachment
+from .results_view import Results
+
+Values = dict[str, Any]
+
+RESULTS, ACCEPTANCE = "results.json", "acceptance.json"
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What a product is held against, and how it is to be told.
+
+    Attributes
+    ----------
+    orientation
+        To be assessed; None: the best that the results hold.
+    language
+        Of the document.
+    """
+
+    profile: Profile
+    contract: Contract
+    product: Product
+    orientation: str | None
+    language: str
+
+
+def embedded(
+    results: Results, results_text: bytes, demand: Demand, others: Mapping[str, bytes]
+) -> list[Attachment]:
+    """The files inside the document, all but acceptance.json.
+
+    Parameters
+    ----------
+    results_text
+        The bytes of results.json.
+    others
+        More files by name: block.toml, templates.
+    """
+    files = [Attachment(RESULTS, results_text, "Data")]
+    files += [
+        Attachment(f"profile/{each.name}", each.content, "Source") for each in demand.profile.files
+    ]
+    files += [Attachment(name, content, "Source") for name, content in others.items()]
+    with TemporaryDirectory() as folder:
+        tables.write_tables(results, Path(folder))
+        files += [
+            Attachment(f"tables/{path.name}", path.read_bytes(), "Supplement")
+            for path in sorted(Path(folder).iterdir())
+        ]
+    return sorted(files, key=lambda each: each.name)
+
+
+def assembled(
+    results: Results, demand: Demand, files: Sequence[Attachment], created: str
+) -> Values:
+    """The dictionary of acceptance.json.
+
+    Parameters
+    ----------
+    results
+        The dictionary of results.json.
+    files
+        All that is embedded but itself.
+    created
+        ISO 8601 time; no clock is read here.
+
+    Raises
+    ------
+    PosstatsError
+        If the results do not hold the orientation, or the profile does not suit the product.
+    """
+    by_name = {each.name: _sha256(each.content) for each in files}
+    orientation = demand.orientation or best_orientation(results)
+    occasion = Occasion(
+        orientation_reason=Reason("asked" if demand.orientation else orientation),
+        contract=demand.contract,
+        language=demand.language,
+        created=created,
+        results_sha256=by_name[RESULTS],
+    )
+    listed = [
+        {"file": each.name, "sha256": by_name[each.name], "relationship": each.relationship}
+        for each in files
+    ]
+    return _assembled(results, demand, orientation, occasion, listed)
+
+
+def reassess(results: Results, profile_files: Mapping[str, bytes], stated: Values) -> Values:
+    """The dictionary again, from what a document embeds.
+
+    Parameters
+    ----------
+    results
+        The embedded results.
+    profile_files
+        The embedded profile and contract files by name, in the order of `stated`.
+    stated
+        The embedded acceptance: what was asked for is taken from it, nothing that was found.
+
+    Raises
+    ------
+    PosstatsError
+        As `assembled`, and if the files hold no requirement.
+    """
+    files = [ProfileFile(name, content) for name, content in profile_files.items()]
+    profile, contract = profile_of_files(files)
+    if profile is None:
+        raise PosstatsError("the embedded profile holds no requirement")
+    demand = Demand(
+        profile, contract, Product(**stated["product"]), stated["orientation"], stated["language"]
+    )
+    occasion = Occasion(
+        orientation_reason=Reason(stated["orientation_reason"]["code"]),
+        contract=contract,
+        language=stated["language"],
+        created=stated["created"],
+        results_sha256=stated["results"]["sha256"],
+    )
+    return _assembled(results, demand, demand.orientation or "", occasion, stated["attachments"])
+
+
+def _assembled(
+    results: Results,
+    demand: Demand,
+    orientation: str,
+    occasion: Occasion,
+    listed: Sequence[Mapping[str, str]],
+) -> Values:
+    found = evidence(results, orientation, demand.product)
+    assessment = assess(found, demand.profile, demand.product, demand.language)
+    values = acceptance_values(assessment, results, occasion)
+    for row, reason in zip(values["requirements"], acceptance_words.reasons(values), strict=True):
+        row["reason"] = reason
+    values["statement"] = statement(assessment)
+    values["versions"]["weasyprint"] = version("weasyprint")
+    values["attachments"] = [dict(row) for row in listed]
+    # as it is read back, so that text of the same document is always the same
+    values = json.loads(json.dumps(values))
+    return values | {"document_id": document_id(values)}
+
+
+def statement(assessment: Assessment) -> str:
+    """The standard's own wording with its numbers, or empty where it has none to say."""
+    return " ".join(_filled(each) for each in assessment.statements)
+
+
+def _filled(chosen: ChosenStatement) -> str:
+    class_m, found_m = chosen.class_m, chosen.found_m
+    text = chosen.template.format(
+        class_m="" if class_m is None else fmt.as_chosen(class_m),
+        class_cm="" if class_m is None else fmt.as_chosen(100.0 * class_m),
+        found_m="" if found_m is None else fmt.number(found_m),
+        found_cm="" if found_m is None else fmt.number(100.0 * found_m),
+        n_points=fmt.count(chosen.n_points),
+    )
+    return text if text.endswith((".", "。")) else f"{text}."
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
