@@ -13,7 +13,7 @@ from .archive_file import ArchiveFile, UnreadableArchiveError
 
 ACCEPTANCE = "acceptance.json"
 SCHEMA = "posstats-acceptance/1"
-LARGEST_DECODED_BYTES = 400_000_000
+LARGEST_DECODED_BYTES = 200_000_000
 
 # What reading values of any shape can raise.
 MALFORMED = (
@@ -64,6 +64,8 @@ def open_archive(file: ArchiveFile) -> Archive:
         If it is encrypted, damaged, or no document of `posstats accept`.
     """
     pdf = open_pdf(file.data)
+    if ("/Prev" in pdf.trailer) != (len(file.ends) > 1):
+        raise UnreadableArchiveError("its revisions are hidden")
     try:
         files = _embedded_files(pdf)
         if ACCEPTANCE not in files:

@@ -33,7 +33,9 @@ def appended(file: ArchiveFile, pdf: pikepdf.Pdf, n_signatures: int) -> Answer:
     """
     if len(file.ends) == 1 and file.ends[0] == len(file.data):
         return answer(APPENDED, [], NOTHING_APPENDED)
-    problems = list(_changes(open_pdf(file.first), pdf))
+    first = open_pdf(file.first)
+    problems = ["its revisions are hidden"] if "/Prev" in first.trailer else []
+    problems += _changes(first, pdf)
     updates = len(file.ends) - 1
     if updates != n_signatures:
         problems.append(f"{updates} updates, but {n_signatures} signatures")

@@ -3,6 +3,7 @@
 import datetime as dt
 import os
 import pty
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -63,6 +64,21 @@ def test_a_signed_document_is_still_one_for_the_archive(folder):
     pdf = pikepdf.open(folder / "out.pdf")
     assert "/Version" not in pdf.Root
     assert str(pdf.trailer.Info.ModDate).startswith("D:20260102")
+
+
+@pytest.mark.skipif(not shutil.which("pdfsig"), reason="pdfsig (poppler-utils) is not installed")
+def test_another_program_finds_the_signature_valid(folder):
+    run(folder)
+    told = subprocess.run(
+        ["pdfsig", "out.pdf"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"HOME": str(folder)},
+    ).stdout
+    assert "Signature is Valid" in told
+    assert "Total document signed" in told
 
 
 def test_a_further_signature_is_appended(folder):

@@ -303,6 +303,13 @@ def test_an_update_that_changes_nothing_is_still_not_a_signature(ask, archive):
     assert "1 updates, but 0 signatures" in failures(ask(with_root(archive, "")))[words.APPENDED]
 
 
+def test_a_hidden_revision_is_found(ask, archive):
+    update = with_page(archive)
+    at = update.rindex(b"/Prev")
+    said = failures(ask(update[:at] + b"/Pre#76" + update[at + 5 :]))
+    assert said == {words.READABLE: "its revisions are hidden"}
+
+
 def test_other_metadata_behind_a_signature_are_named(ask, archive):
     pdf = pikepdf.open(io.BytesIO(archive))
     info, size = pdf.trailer.Info.objgen[0], int(pdf.trailer.Size)
