@@ -55,12 +55,14 @@ def verify(
     """
     try:
         archive = open_archive(part(read_file(path)))
+        n_signatures = count_signatures(archive.pdf)
     except UnreadableArchiveError as error:
         yield failed(READABLE, error)
         return
     stated = archive.acceptance
     yield answer(READABLE, [], readable(stated.get("document_id"), stated.get("verdict")))
-    yield from _on_signatures(archive, trust, now)
+    yield from signatures(archive.file, n_signatures, trust, now)
+    yield _on_updates(archive, n_signatures)
     yield embedded_files(archive)
     yield assessment(archive, steps)
     yield pages(archive, steps)
@@ -72,15 +74,11 @@ def holds(answers: Sequence[Answer]) -> bool:
     return all(each.standing is not Standing.FAIL for each in answers)
 
 
-def _on_signatures(
-    archive: Archive, trust: Sequence[bytes] | None, now: dt.datetime
-) -> Iterator[Answer]:
-    n_signatures = count_signatures(archive.pdf)
-    yield from signatures(archive.file, n_signatures, trust, now)
+def _on_updates(archive: Archive, n_signatures: int) -> Answer:
     try:
-        yield appended(archive.file, archive.pdf, n_signatures)
+        return appended(archive.file, archive.pdf, n_signatures)
     except (UnreadableArchiveError, *MALFORMED) as error:
-        yield failed(APPENDED, f"it cannot be compared with its first state ({error})")
+        return failed(APPENDED, f"it cannot be compared with its first state ({error})")
 
 
 def _on_inputs(archive: Archive, inputs: Path | None, steps: Steps) -> Iterator[Answer]:

@@ -9,7 +9,7 @@ import pikepdf
 
 from posstats.errors import PosstatsError
 
-from .archive_file import ArchiveFile
+from .archive_file import ArchiveFile, UnreadableArchiveError
 from .archive_reading import MALFORMED
 from .signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
 from .verify_words import (
@@ -35,9 +35,18 @@ class TrustError(PosstatsError):
 
 
 def count_signatures(pdf: pikepdf.Pdf) -> int:
-    """Signatures anywhere in a document, in a form field or not."""
-    dictionaries = (each for each in pdf.objects if isinstance(each, pikepdf.Dictionary))
-    return sum("/ByteRange" in each for each in dictionaries)
+    """Signatures anywhere in a document, in a form field or not.
+
+    Raises
+    ------
+    UnreadableArchiveError
+        If an object cannot be read.
+    """
+    try:
+        dictionaries = (each for each in pdf.objects if isinstance(each, pikepdf.Dictionary))
+        return sum("/ByteRange" in each for each in dictionaries)
+    except MALFORMED as error:
+        raise UnreadableArchiveError(f"it is damaged ({error})") from error
 
 
 def read_trust(content: bytes) -> list[bytes]:

@@ -10,6 +10,7 @@ import zlib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pikepdf
 import pytest
 from archive_documents import (
@@ -412,6 +413,22 @@ def test_bytes_behind_the_end_are_said(ask, archive):
     assert "behind its end" in failures(ask(archive + b"x"))[words.READABLE]
     end = archive[archive.rindex(b"startxref") :]
     assert words.APPENDED in failures(ask(archive + b"% note\n" + end))
+
+
+def test_damage_of_any_kind_makes_failures_not_tracebacks(ask, archive, signed):
+    rng = np.random.default_rng(5)
+    steps = replace(STEPS, render_document=lambda *_: "<p>quick</p>")
+    for data in (archive, signed):
+        for _ in range(12):
+            begin, end = np.sort(rng.integers(0, len(data), 2))
+            piece = data[begin : min(end, begin + 30)]
+            at = int(rng.integers(0, len(data)))
+            for damaged in (
+                data[:at] + piece + data[at:],
+                data[:at] + piece + data[at + len(piece) :],
+            ):
+                ask(damaged, steps)
+                assert damaged == data or not ask.holds
 
 
 def foreign(**options) -> bytes:

@@ -25,8 +25,11 @@ from posstats.analysis import Settings, analyse
 from posstats.block_io import read_block, write_block
 from posstats.errors import PosstatsError
 from posstats.reports import verify_command
+from posstats.reports import verify_words as words
+from posstats.reports.archive_file import LARGEST_BYTES
 from posstats.reports.cli import cli
 from posstats.reports.recomputation import recompute
+from posstats.reports.verification_values import TOLERANCE
 from posstats.results import results, to_json
 
 COMMAND = Path(sys.executable).with_name("posstats")
@@ -86,6 +89,19 @@ def test_what_cannot_be_asked_is_an_error(folder, arguments, word):
     assert run.exit_code == 1
     assert run.output.startswith("Error: ")
     assert word in run.output
+
+
+def test_every_question_is_described():
+    page = (Path(__file__).parents[1] / "docs" / "verify.md").read_text(encoding="utf-8")
+    questions = [
+        *(words.READABLE, words.SIGNED, words.APPENDED, words.FILES, words.ASSESSMENT),
+        *(words.PAGES, words.INPUTS, words.RECOMPUTED, words.intact_question("the signature")),
+        words.certificate_question("the signature"),
+        words.trust_question("the signature"),
+    ]
+    assert not [each for each in questions if f"| {each} |" not in page]
+    assert f"{TOLERANCE:g}".replace("e-0", "e-") in page
+    assert f"{LARGEST_BYTES // 1_000_000} MB" in page
 
 
 @pytest.mark.parametrize("command", ["sign", "verify"])
