@@ -497,6 +497,72 @@ def profiles(name: str | None) -> None:
         click.echo(line)
 
 
+@cli.command()
+@click.argument("file", type=FOLDER, metavar="FILE.pdf")
+@click.option(
+    "--p12", type=FOLDER, required=True, metavar="KEY.p12", help="Private key and certificate."
+)
+@click.option(
+    "--passphrase-file",
+    type=FOLDER,
+    metavar="FILE",
+    help="Its first line opens the key.  [default: ask for the passphrase]",
+)
+@click.option("--out", type=FOLDER, required=True, metavar="SIGNED.pdf", help="File to write.")
+@_clear_errors
+def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None:
+    """Sign the acceptance document FILE.pdf, as a copy; the original is left alone.
+
+    Needs the optional extra: pip install 'posstats[sign]'. No network is used. A document that is
+    signed already gets a further signature.
+
+    \b
+    Example:
+      posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
+    """
+    from .sign_command import sign_file
+
+    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
+        click.echo(line)
+
+
+@cli.command()
+@click.argument("file", type=FOLDER, metavar="FILE.pdf")
+@click.option(
+    "--inputs", type=FOLDER, metavar="BLOCK", help="Compare with this block folder, and recompute."
+)
+@click.option(
+    "--trust", type=FOLDER, metavar="CERT.pem", help="Whom to trust: certificates of authorities."
+)
+@_clear_errors
+def verify(file: Path, inputs: Path | None, trust: Path | None) -> None:
+    """Verify the acceptance document FILE.pdf: a line a question.
+
+    Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
+    the pages, and with the input files. Exit code 0 if all that was asked holds, 1 otherwise.
+
+    \b
+    Example:
+      posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
+    """
+    from .verification import holds
+    from .verify_command import verify_file
+
+    answers = verify_file(file, inputs, trust)
+    for each in answers:
+        click.echo(each.line)
+    if not holds(answers):
+        sys.exit(1)
+
+
+def _ask_passphrase() -> str:
+    """Hidden, from a terminal only: a pipe would leave it in a script."""
+    if not sys.stdin.isatty():
+        raise PosstatsError("no terminal to ask for the passphrase: give --passphrase-file")
+    answer: str = click.prompt("Passphrase", hide_input=True, default="", show_default=False)
+    return answer
+
+
 def _default_out(block: Path) -> Path:
     return Path("out") / block.resolve().name
 

@@ -19,13 +19,20 @@ def render(html_text: str) -> bytes:
     PdfUnavailableError
         If the libraries that WeasyPrint needs are not installed.
     """
-    weasyprint, fetcher = _load()
+    weasyprint, fetcher = load()
     page = weasyprint.HTML(string=html_text, url_fetcher=fetcher)
     pdf: bytes = page.write_pdf(pdf_tags=True, pdf_identifier=b"posstats-report")
     return pdf
 
 
-def _load() -> tuple[Any, Any]:
+def load() -> tuple[Any, Any]:
+    """WeasyPrint, and a fetcher that gives it nothing but ``data:`` URIs.
+
+    Raises
+    ------
+    PdfUnavailableError
+        If the libraries that WeasyPrint needs are not installed.
+    """
     try:
         import weasyprint
         from weasyprint.urls import URLFetcher

@@ -1,0 +1,90 @@
+"""`posstats verify`: every question on a document of `posstats accept`, answered.
+
+Nothing in the document is believed: its data are hashed, assessed and laid out again. What cannot
+be found out without a signature is who wrote it.
+"""
+
+import datetime as dt
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from .archive_file import UnreadableArchiveError, part, read_file
+from .archive_reading import MALFORMED, Archive, open_archive
+from .verification_data import assessment, embedded_files, input_files, recomputed
+from .verification_pages import pages
+from .verification_signature import count_signatures, signatures
+from .verification_steps import Steps
+from .verification_updates import appended
+from .verify_words import (
+    APPENDED,
+    INPUTS,
+    NO_INPUTS,
+    READABLE,
+    RECOMPUTED,
+    Answer,
+    Standing,
+    answer,
+    failed,
+    readable,
+)
+
+
+def verify(
+    path: Path,
+    steps: Steps,
+    *,
+    inputs: Path | None = None,
+    trust: Sequence[bytes] | None = None,
+    now: dt.datetime,
+) -> Iterator[Answer]:
+    """Answer every question on a document, one after the other.
+
+    Parameters
+    ----------
+    steps
+        What the document was made with.
+    inputs
+        Block folder with the input files; None: not asked for.
+    trust
+        Certificates, DER, that a signer's certificate has to lead to; None: not asked for.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    try:
+        archive = open_archive(part(read_file(path)))
+        n_signatures = count_signatures(archive.pdf)
+    except UnreadableArchiveError as error:
+        yield failed(READABLE, error)
+        return
+    stated = archive.acceptance
+    yield answer(READABLE, [], readable(stated.get("document_id"), stated.get("verdict")))
+    yield from signatures(archive.file, n_signatures, trust, now)
+    yield _on_updates(archive, n_signatures)
+    yield embedded_files(archive)
+    yield assessment(archive, steps)
+    yield pages(archive, steps)
+    yield from _on_inputs(archive, inputs, steps)
+
+
+def holds(answers: Sequence[Answer]) -> bool:
+    """Whether all that was asked holds."""
+    return all(each.standing is not Standing.FAIL for each in answers)
+
+
+def _on_updates(archive: Archive, n_signatures: int) -> Answer:
+    try:
+        return appended(archive.file, archive.pdf, n_signatures)
+    except (UnreadableArchiveError, *MALFORMED) as error:
+        return failed(APPENDED, f"it cannot be compared with its first state ({error})")
+
+
+def _on_inputs(archive: Archive, inputs: Path | None, steps: Steps) -> Iterator[Answer]:
+    if inputs is None:
+        yield Answer(Standing.NOT_ASKED, INPUTS, NO_INPUTS)
+        yield Answer(Standing.NOT_ASKED, RECOMPUTED, NO_INPUTS)
+    else:
+        yield input_files(archive, inputs)
+        yield recomputed(archive, inputs, steps)

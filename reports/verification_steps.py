@@ -1,0 +1,33 @@
+"""What verification needs of the rest of the package to do the work again."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+Values = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The steps from a block folder to the page of a document, each a pure function.
+
+    Attributes
+    ----------
+    recompute
+        (block folder, results as a pattern: settings and inputs) -> results.
+    reassess
+        (results, profile files by name, acceptance as a pattern) -> acceptance values.
+    render_document
+        (acceptance, results, user templates by name) -> HTML.
+    numbers
+        Versions that numbers depend on: posstats, Python and the main libraries.
+    layout
+        Versions that the pages depend on, as `made_with` reads them from a document.
+    """
+
+    recompute: Callable[[Path, Values], Values]
+    reassess: Callable[[Values, Mapping[str, bytes], Values], Values]
+    render_document: Callable[[Values, Values, Mapping[str, bytes]], str]
+    numbers: Mapping[str, str]
+    layout: str

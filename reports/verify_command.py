@@ -1,0 +1,54 @@
+"""`posstats verify`: a line a question, and whether all that was asked holds."""
+
+import datetime as dt
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+
+from posstats import __version__
+from posstats.errors import PosstatsError
+from posstats.results import versions
+
+from .archive_file import read_file
+from .recomputation import recompute
+from .verification import verify
+from .verification_signature import read_trust
+from .verification_steps import Steps
+from .verify_words import Answer
+
+
+def verify_file(path: Path, inputs: Path | None, trust_file: Path | None) -> Sequence[Answer]:
+    """Answer every question on the document `path`.
+
+    Raises
+    ------
+    PosstatsError
+        If the trusted certificate cannot be read, or the inputs are no folder.
+    OSError
+        If a file cannot be read.
+    """
+    if inputs is not None and not inputs.is_dir():
+        raise PosstatsError(f"{inputs} is no block folder")
+    trust = None if trust_file is None else _trust(trust_file)
+    now = dt.datetime.now(dt.UTC)
+    return list(verify(path, steps(), inputs=inputs, trust=trust, now=now))
+
+
+def steps() -> Steps:
+    """The steps of the installed version."""
+    report = import_module(".acceptance_report", __package__)
+    return Steps(
+        recompute=recompute,
+        reassess=report.reassess,
+        render_document=report.render_document,
+        numbers={"posstats": __version__, **versions()},
+        layout=f"posstats {__version__}, WeasyPrint {version('weasyprint')}",
+    )
+
+
+def _trust(path: Path) -> list[bytes]:
+    try:
+        return read_trust(read_file(path))
+    except PosstatsError as error:
+        raise PosstatsError(f"{path}: {error}") from error
