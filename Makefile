@@ -37,8 +37,9 @@ benchmark: $(READY)  ## Time the relative orientation beside PoseLib, and a whol
 	$(BIN)/python benchmarks/analysis.py
 
 .PHONY: coverage
-coverage: $(READY)  ## Simulate the coverage of the regression's intervals (minutes)
+coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth, of regression and bundle (minutes)
 	$(BIN)/python benchmarks/interval_coverage.py
+	$(BIN)/python benchmarks/bundle_coverage.py
 
 .PHONY: seeds
 seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
