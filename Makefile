@@ -37,8 +37,9 @@ benchmark: $(READY)  ## Time the relative orientation beside PoseLib, and a whol
 	$(BIN)/python benchmarks/analysis.py
 
 .PHONY: coverage
-coverage: $(READY)  ## Simulate the coverage of intervals: regression, acceptance (minutes)
+coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth (many minutes)
 	$(BIN)/python benchmarks/interval_coverage.py
+	$(BIN)/python benchmarks/bundle_coverage.py
 	$(BIN)/python benchmarks/acceptance_coverage.py
 
 .PHONY: seeds

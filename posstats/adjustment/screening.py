@@ -8,12 +8,14 @@ from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.bundle import adjust
-from posstats.bundle.problem import BundleProblem, Control
+from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
 
+_Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
 
 _FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
 _WEAK_POS = 100.0  # times the stated standard deviations
+_MUTE = 1e4  # times its standard deviation a ray follows the others, and its redundancy has digits
 
 
 def contradicting_rays(
@@ -40,12 +42,47 @@ def contradicting_rays(
     if pos_holds(problem):
         relaxed = without_control(relaxed)
     result = adjust(relaxed, robust=True, progress=progress)
-    image = result.groups["image"]
-    sigma_px = problem.sigma_px * np.sqrt(image.square_sum / max(image.redundancy, 1.0))
-    far = np.abs(result.residual_px).max(axis=1) > _FAR * sigma_px
+    limit = _FAR * _image_scale(result)
     known = np.isfinite(result.ground_m[problem.point, 0])
-    contradicting: _Bools = result.rejected & far & known & ~wrong
-    return contradicting
+    suspected: _Bools = result.rejected & known & ~wrong
+    suspected &= _largest(result, problem.sigma_px[:, None]) > limit
+    if suspected.any():
+        suspected &= _largest_w(relaxed, result, suspected) > limit
+    return suspected
+
+
+def _image_scale(result: AdjustedBundle) -> float:
+    """Standard deviation of image coordinates over the stated one."""
+    image = result.groups["image"]
+    return float(np.sqrt(image.square_sum / max(image.redundancy, 1.0)))
+
+
+def _largest(result: AdjustedBundle, sigma_px: _Floats) -> _Floats:
+    """(m,) the larger residual of a ray over sigma_px, (m, 1) or (m, 2); NaN behind a camera."""
+    largest: _Floats = np.abs(result.residual_px / sigma_px).max(axis=1)
+    return largest
+
+
+def _largest_w(problem: BundleProblem, result: AdjustedBundle, suspected: _Bools) -> _Floats:
+    """(m,) how far suspected rays are from where the others see their points, over its sigma.
+
+    That sigma holds the point's own, which of a point of few rays is larger than the measurement's:
+    by that one alone, a good ray that was once rejected would stay so. A ray of weight p and
+    redundancy number r is foretold with the variance (1 - r) / p.
+    """
+    gone = result.rejected & ~suspected
+    sigma_px = np.where(suspected, _MUTE, 1.0) * np.where(gone, np.inf, problem.sigma_px)
+    muted = adjust(
+        replace(
+            problem,
+            sigma_px=sigma_px,
+            ground_from_image=result.ground_from_image,
+            position_m=result.position_m,
+            ground_m=np.where(np.isnan(result.ground_m), problem.ground_m, result.ground_m),
+        )
+    )
+    foretold = _MUTE**2 * (1.0 - muted.redundancy_px)
+    return _largest(muted, problem.sigma_px[:, None] * np.sqrt(1.0 + foretold))
 
 
 def pos_holds(problem: BundleProblem) -> bool:
