@@ -188,9 +188,12 @@ def _require_camera(block: Block, calibration: Calibration) -> None:
         )
 
 
-def calibrated(block: Block, path: Path) -> Block:
-    """The block with the calibration of a file taken off, the file among its inputs."""
-    taken_off = apply_calibration(block, read_calibration(path))
+def calibrated(block: Block, path: Path, *, unknown: bool = False) -> Block:
+    """The block with the calibration of a file taken off, the file among its inputs.
+
+    `unknown` as of `apply_calibration`.
+    """
+    taken_off = apply_calibration(block, read_calibration(path), unknown=unknown)
     read = (path.name, sha256(path.read_bytes()))
     return replace(taken_off, inputs=(*block.inputs, read))
 

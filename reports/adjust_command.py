@@ -9,7 +9,7 @@ from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
 from posstats.adjustment.control import NAMED_CHOICES, read_ids
 from posstats.adjustment.results import adjustment_results, write_adjustment
 from posstats.block_io import read_block
-from posstats.calibration import apply_calibration, read_calibration
+from posstats.calibration import calibrated
 from posstats.errors import PosstatsError
 from posstats.results import to_json
 
@@ -48,7 +48,7 @@ def adjust_folder(
     with staged_folder(out) as stage, progress_bar("reading the block") as progress:
         block = read_block(folder)
         if calibration is not None:
-            block = apply_calibration(block, read_calibration(calibration))
+            block = calibrated(block, calibration, unknown=settings.drift != "none")
         adjustment = adjust_block(
             block, settings, progress=lambda step, done: progress(step, 0.8 * done)
         )

@@ -392,6 +392,9 @@ def _warnings(adjustment: Adjustment) -> Iterator[str]:
         )
     if adjustment.weights is not None and adjustment.weights.kept:
         groups = ", ".join(adjustment.weights.kept)
-        yield f"too little redundancy to estimate the weight of: {groups}; it keeps the stated one"
+        yield (
+            f"too little redundancy, or residuals of zero, to estimate the weight of: {groups}; it"
+            " keeps the stated one"
+        )
     if adjustment.weights is not None and not adjustment.weights.converged:
         yield "the estimated weights did not settle"
