@@ -18,6 +18,7 @@ from .tables import (
 
 SHOWN_BLUNDERS = 25
 SHOWN_POINTS = 60
+SHOWN_CORRELATIONS = 25
 ELEMENTS = {"x": "X", "y": "Y", "z": "Z"}
 
 
@@ -141,14 +142,17 @@ def dropped(results: Results) -> Table:
 
 def correlations(results: Results) -> Table:
     """Correlations above 0.95."""
-    kept = rows(results, "correlations")
+    found = sorted(rows(results, "correlations"), key=lambda row: -abs(row["value"]))
+    kept = found[:SHOWN_CORRELATIONS]
     columns = (
         text_column("Parameter", [_named(row, "first") for row in kept]),
         text_column("With", [_named(row, "second") for row in kept]),
         aligned_column("Correlation", "", [row["value"] for row in kept]),
     )
     caption = "Correlations above 0.95, of parameters with each other and with orientations."
-    return Table("correlations", caption, columns)
+    n_more = len(found) - len(kept)
+    notes = (f"{fmt.count(n_more)} smaller ones are in adjustment.json.",) if n_more else ()
+    return Table("correlations", caption, columns, notes)
 
 
 def _named(row: Row, which: str) -> str:

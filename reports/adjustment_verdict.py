@@ -84,7 +84,7 @@ def _check_points(results: Results) -> str:
     if fmt.is_missing(row.get("rmse_horizontal_m")):
         return "No check points were used, so the ground was not tested."
     text = (
-        f"At {row['n']} check points, which took no part, the RMSE is "
+        f"At {_number_of(row['n'])}, which took no part, the RMSE is "
         f"{_m(row['rmse_horizontal_m'])} horizontally and {_m(row['rmse_vertical_m'])} vertically"
     )
     predicted = predicted_rmse(results)
@@ -99,12 +99,17 @@ def _check_points(results: Results) -> str:
     return f"{text}."
 
 
+def _number_of(n: int) -> str:
+    return "one check point" if n == 1 else f"{fmt.count(n)} check points"
+
+
 def _m(value: float) -> str:
     return fmt.with_unit(value, "m")
 
 
 def _blunders(results: Results) -> str:
     taken = rows(results, "blunders", found_by="snooping", taken_out=True)
+    held = rows(results, "blunders", taken_out=False)
     parts = []
     for kind in dict.fromkeys(row["kind"] for row in taken if row["kind"] != "image"):
         same = [row for row in taken if row["kind"] == kind]
@@ -112,7 +117,11 @@ def _blunders(results: Results) -> str:
     n_rays = sum(row["kind"] == "image" for row in taken) + results["n_rejected_rays"]
     if n_rays:
         parts.append("one image ray" if n_rays == 1 else f"{fmt.count(n_rays)} image rays")
-    return f"Taken out as blunders: {fmt.joined(parts)}." if parts else "No blunders were found."
+    sentences = [f"Taken out as blunders: {fmt.joined(parts)}."] if parts else []
+    if held:
+        names = fmt.joined(_named(row) for row in held)
+        sentences.append(f"Contradicting others, but kept as the block needs it: {names}.")
+    return " ".join(sentences) or "No blunders were found."
 
 
 def _counted(kind: str, same: list[Row]) -> str:
@@ -122,6 +131,8 @@ def _counted(kind: str, same: list[Row]) -> str:
 
 
 def _named(row: Row) -> str:
+    if row["kind"] == "image":
+        return f"{KINDS['image']} of point {row['point']} in {row['image']}"
     what = row["point"] if row["kind"] == "control" else row["image"]
     return f"{KINDS[row['kind']]} {what}"
 

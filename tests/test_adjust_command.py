@@ -15,7 +15,7 @@ from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
 from posstats.block_io import write_block
-from posstats.reports import adjustment_document, html
+from posstats.reports import adjustment_document, adjustment_tables, html
 from posstats.reports.cli import cli
 
 POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
@@ -117,6 +117,32 @@ def test_wrong_control_is_told_and_nothing_is_written(folder, tmp_path, control,
     assert result.exit_code == 1
     assert words in result.output
     assert not out.exists()
+
+
+def test_the_error_of_a_calibration_does_not_weaken_a_pos_whose_boresight_is_unknown(
+    folder, tmp_path
+):
+    file, out = tmp_path / "boresight.toml", tmp_path / "out"
+    assert run("calibrate", folder, "--control", "all", "--out", file).exit_code == 0
+    result = run(
+        "adjust", folder, "--control", "corners", "--drift", "strip", "--calibration", file,
+        "--out", out, "--no-pdf",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    values = json.loads((out / "adjustment.json").read_text())
+    imu = next(row for row in values["groups"] if row["group"] == "imu")
+    simulated_over_stated = 0.13  # variances: 1.6e-5, 1.6e-5 and 5e-5 rad against 0.005 degrees
+    assert imu["variance_factor"] > 0.4 * simulated_over_stated
+    assert "boresight.toml" in [each["file"] for each in values["block"]["inputs"]]
+
+
+def test_the_strongest_correlations_are_shown(values):
+    pair = {"first": "boresight_yaw", "first_scope": "block", "second": "imu_kappa_shift"}
+    many = [pair | {"second_scope": str(k), "value": 0.95 + 0.001 * k} for k in range(40)]
+    table = adjustment_tables.correlations(values | {"correlations": many})
+    assert len(table.rows) == adjustment_tables.SHOWN_CORRELATIONS
+    assert table.rows[0][1].endswith("strip 39")
+    assert "15 smaller ones" in table.notes[0]
 
 
 def test_an_adjustment_that_fails_writes_nothing(tmp_path):

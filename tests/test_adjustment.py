@@ -11,9 +11,11 @@ from small_scenario import OMEGA_CONSTANT_RAD, OMEGA_DRIFT_RAD_PER_S, small_bloc
 from posstats import read_block
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
+from posstats.adjustment.snooping import Blunder
 from posstats.block_io import write_block
 from posstats.errors import PosstatsError
 from posstats.intersection import intersect
+from posstats.reports.adjustment_verdict import paragraph
 from posstats.results import to_json
 from posstats.rotation import wrapped
 
@@ -237,6 +239,70 @@ def test_a_control_point_off_by_100_m_is_named(block):
     assert [row["point"] for row in named] == ["C3"]
     assert named[0]["size"][0] == pytest.approx(100.0, abs=2.0)
     assert found.overall.p > 1e-4
+
+
+@pytest.mark.parametrize(("control", "axis"), [("all", 2), (("C1", "C3"), 0)])
+def test_a_wrong_control_point_is_no_witness_against_priors(block, control, axis):
+    surveyed = block.ground_points
+    position = surveyed.position_m.copy()
+    position[list(surveyed.point).index("C3"), axis] += 100.0
+    off = replace(block, ground_points=replace(surveyed, position_m=position))
+    found = adjust_block(off, AdjustmentSettings(control=control, drift="strip"))
+    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "control"]
+    assert [row["point"] for row in named] == ["C3"]
+    for each in found.parameters:
+        if each.name.startswith("gnss") and each.name.endswith("shift"):
+            assert abs(each.value) < 1.0
+
+
+def test_a_single_control_point_against_the_priors_is_warned_of(block):
+    surveyed = block.ground_points
+    position = surveyed.position_m.copy()
+    position[list(surveyed.point).index("C3"), 0] += 100.0
+    off = replace(block, ground_points=replace(surveyed, position_m=position))
+
+    def warned(block):
+        found = adjust_block(block, AdjustmentSettings(control=("C3",)))
+        return [w for w in adjustment_results(found)["warnings"] if "control point C3" in w]
+
+    assert "gnss_x_shift" in "".join(warned(off))
+    assert warned(block) == []
+
+
+def test_an_image_with_swapped_axes_is_named_and_spoils_no_check_point(block):
+    ties = block.tie_points
+    image = 12
+    xy = ties.xy_px.copy()
+    rays = ties.image == image
+    xy[rays] = xy[rays][:, ::-1]
+    swapped = replace(block, tie_points=replace(ties, xy_px=xy))
+    found = adjust_block(swapped, AdjustmentSettings(control="corners", drift="strip"))
+    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
+    assert [row["image"] for row in named] == [block.orientations.image[image]]
+    assert np.nanmax(np.abs(found.check_points.difference_m)) < 5.0
+
+
+def test_a_control_point_without_any_error_is_refused(block):
+    surveyed = block.ground_points
+    exact = replace(surveyed, sigma_xy_m=np.zeros(len(surveyed)))
+    with pytest.raises(PosstatsError, match="of 0, expected a positive"):
+        adjust_block(replace(block, ground_points=exact), AdjustmentSettings(control="corners"))
+
+
+def test_points_in_one_image_each_are_told(block):
+    ties = block.tie_points
+    with pytest.raises(PosstatsError, match="measured in two images"):
+        adjust_block(replace(block, tie_points=ties.subset(ties.image == 0)))
+
+
+def test_an_observation_that_the_block_needs_is_said_to_be_doubtful(tiny):
+    found = adjust_block(tiny, AdjustmentSettings("all"))
+    ray = Blunder("image", 0, 9.0, np.array([1.0, 0.0]), "px")
+    snooping = replace(found.snooping, held=ray, complete=False)
+    values = adjustment_results(replace(found, snooping=snooping))
+    assert any("is not determined: it, or one" in each for each in values["warnings"])
+    assert not any("largest number" in each for each in values["warnings"])
+    assert "kept as the block needs it: image ray of point" in paragraph(values)
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,17 @@ def without(problem, *observed, images=slice(None)):
     return problem
 
 
+def far_too_weak(problem):
+    """Standard deviations as large as files may state them."""
+    n = len(problem.position_m)
+    pos = replace(
+        problem.pos,
+        sigma_antenna_m=np.full((n, 3), 1e9),
+        sigma_angles_rad=np.full((n, 3), 1e9),
+    )
+    return replace(problem, pos=pos)
+
+
 def explained(problem):
     ids = [f"i{k}" for k in range(len(problem.position_m))]
     with pytest.raises(UndeterminedError) as caught:
@@ -53,6 +64,8 @@ def weak(problem):
 SINGULAR = {
     "no datum": (without(noisy_problem(n_control=0), GNSS, IMU),
                  "no control and no POS observation", noisy_problem(n_control=0)),
+    "POS of no use": (far_too_weak(noisy_problem(n_control=0)),
+                      "no control and no POS observation", noisy_problem(n_control=0)),
     "two points": (without(noisy_problem(n_control=2), GNSS, IMU),
                    "2 control points and no POS", without(noisy_problem(n_control=3), GNSS, IMU)),
     "angles alone": (without(noisy_problem(n_control=0), GNSS),

@@ -39,7 +39,8 @@ def bundle_problem(
     Raises
     ------
     GeometryError
-        If Bauer's parameters are wanted and a pixel size is not known.
+        If Bauer's parameters are wanted and a pixel size is not known, or a control point has a
+        standard deviation of 0.
     """
     pos, ties = block.orientations, block.tie_points
     distance = np.array([camera.principal_distance_px for camera in block.cameras])
@@ -96,6 +97,12 @@ def _control(block: Block, chosen: _Bools | None) -> Control:
     wanted = ~surveyed.is_check if chosen is None else chosen
     rows = [g for g in np.flatnonzero(wanted) if surveyed.point[g] in number]
     sigma = np.column_stack([surveyed.sigma_xy_m, surveyed.sigma_xy_m, surveyed.sigma_z_m])[rows]
+    exact = [surveyed.point[g] for g, each in zip(rows, sigma, strict=True) if (each == 0.0).any()]
+    if exact:
+        raise GeometryError(
+            f"control points {', '.join(exact)}: found a standard deviation (sigma_xy, sigma_z) of"
+            " 0, expected a positive one or none"
+        )
     return Control(
         np.array([number[surveyed.point[g]] for g in rows], dtype=np.intp),
         surveyed.position_m[rows],

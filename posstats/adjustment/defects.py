@@ -330,15 +330,23 @@ def _single_images(problem: BundleProblem, images: tuple[int, ...]) -> tuple[str
     )
 
 
+def _useful_pos(problem: BundleProblem) -> tuple[bool, bool]:
+    """Whether POS positions and angles are more accurate than the block is large, and a radian."""
+    size_m = np.linalg.norm(np.ptp(problem.position_m, axis=0))
+    pos = problem.pos
+    return bool((pos.sigma_antenna_m < size_m).any()), bool((pos.sigma_angles_rad < 1.0).any())
+
+
 def _datum(problem: BundleProblem) -> tuple[str, str]:
     situation = _Situation(problem, {})
-    if situation.observed(slice(0, 3)):
+    positions, angles = _useful_pos(problem)
+    if positions:
         return (
             f"with {situation.control}, the block can turn about the line on which the observed"
             " antenna positions lie",
             "a second strip, a control point beside the line, or IMU angles",
         )
-    if situation.observed(slice(3, 6)):
+    if angles:
         return (
             f"angles alone, with {situation.control}, define neither position nor scale",
             "two full control points, or GNSS positions",

@@ -2,17 +2,18 @@
 
 A prior is an observation of 0 like others, and is judged like them: by the estimate over the
 standard deviation that the estimate's difference from the prior has. A contradicted prior would
-not bias what the measurements determine, but spoil sigma0 and all tests.
+not bias what the measurements determine, but spoil sigma0 and all tests. A control point that
+contradicts more than any prior does is wrong itself, and no witness against priors.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from posstats.adjustment.significance import parameter_tests
+from posstats.adjustment.significance import local_tests, parameter_tests
 from posstats.bundle import adjust
 from posstats.bundle.parameters import BLOCK, CommonParameter
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
 
 CONTRADICTED = 4.0
 """Standard deviations beyond which measurements contradict a prior."""
@@ -26,26 +27,51 @@ def with_fitting_priors(problem: BundleProblem, adjusted: AdjustedBundle) -> Bun
     parameter of the block is added, from which the strips then differ. (Without their priors the
     strips' IMU shifts could not be told from the boresight.) Otherwise the prior goes.
     """
+    judged, adjusted = _without_wrong_control(problem, adjusted)
     for _ in range(_ROUNDS):
-        contradicted = _contradicted(problem, adjusted)
+        contradicted = list(_contradicted(judged, adjusted))
         if not contradicted:
             break
-        problem = _changed(problem, contradicted)
+        judged = _changed(judged, contradicted)
+        adjusted = adjust(judged)
+    return replace(problem, parameters=judged.parameters)
+
+
+def _without_wrong_control(
+    problem: BundleProblem, adjusted: AdjustedBundle
+) -> tuple[BundleProblem, AdjustedBundle]:
+    """Without control points, but for the last, that contradict more than any prior does.
+
+    Of a single wrong observation the standardised residual is the largest of all.
+    """
+    while len(problem.control.point) > 1:
+        priors = _contradicted(problem, adjusted).values()
+        w = np.nan_to_num(np.abs(local_tests(problem, adjusted)["control"].w).max(axis=1))
+        if not priors or w.max() <= max(priors):
+            break
+        problem = _without_control_point(problem, int(w.argmax()))
         adjusted = adjust(problem)
-    return problem
+    return problem, adjusted
 
 
-def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle) -> list[CommonParameter]:
-    """Parameters that the measurements determine, at another value than their prior."""
+def _without_control_point(problem: BundleProblem, row: int) -> BundleProblem:
+    control = problem.control
+    rows = np.delete(np.arange(len(control.point)), row)
+    left = Control(control.point[rows], control.position_m[rows], control.covariance_m2[rows])
+    return replace(problem, control=left)
+
+
+def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle) -> dict[CommonParameter, float]:
+    """Parameters that the measurements determine, at another value than their prior: with |w|."""
     tests = parameter_tests(problem, adjusted)
     variances = np.diagonal(adjusted.common_covariance)
-    return [
-        each
+    return {
+        each: abs(test.value - each.value) / float(np.sqrt(each.sigma**2 - variance))
         for each, test, variance in zip(problem.parameters, tests, variances, strict=True)
         if each.sigma is not None
         and test.determined
         and (test.value - each.value) ** 2 > CONTRADICTED**2 * (each.sigma**2 - variance)
-    ]
+    }
 
 
 def _changed(problem: BundleProblem, contradicted: list[CommonParameter]) -> BundleProblem:

@@ -375,6 +375,23 @@ def _cells(adjustment: Adjustment) -> Iterator[Row]:
             }
 
 
+def _doubtful_control(adjustment: Adjustment) -> Iterator[str]:
+    """A control point that no other checks, where priors of the GNSS gave way to it."""
+    control = adjustment.problem.control
+    with_prior = {each.name for each in adjustment.stated.parameters if each.sigma is not None}
+    freed = [
+        each.name
+        for each in adjustment.problem.parameters
+        if each.sigma is None and each.name in with_prior and each.name.startswith("gnss")
+    ]
+    if freed and len(control.point) == 1:
+        point = adjustment.block.tie_points.point_id[control.point[0]]
+        yield (
+            f"control point {point} contradicts the prior of {', '.join(dict.fromkeys(freed))}, and"
+            " no other control point tells which of the two is wrong: the block follows the point"
+        )
+
+
 def _warnings(adjustment: Adjustment) -> Iterator[str]:
     n_images = len(adjustment.block.orientations)
     for kind, words in (("gnss", "GNSS positions"), ("imu", "IMU angles")):
@@ -385,13 +402,22 @@ def _warnings(adjustment: Adjustment) -> Iterator[str]:
                 " is no blunder but a systematic error that no parameter describes (--drift block"
                 " or strip), or their stated accuracy is too optimistic"
             )
-    if not adjustment.snooping.complete:
+    yield from _doubtful_control(adjustment)
+    if adjustment.snooping.held is not None:
+        yield (
+            "data snooping ended at an observation that contradicts others but without which the"
+            " block is not determined: it, or one that it is tied to, is a blunder"
+        )
+    elif not adjustment.snooping.complete:
         yield (
             "data snooping stopped at its largest number of blunders: the stated weights may be too"
             " optimistic (see the variance factors), or the block holds many blunders"
         )
     if adjustment.weights is not None and adjustment.weights.kept:
         groups = ", ".join(adjustment.weights.kept)
-        yield f"too little redundancy to estimate the weight of: {groups}; it keeps the stated one"
+        yield (
+            f"too little redundancy, or residuals of zero, to estimate the weight of: {groups}; it"
+            " keeps the stated one"
+        )
     if adjustment.weights is not None and not adjustment.weights.converged:
         yield "the estimated weights did not settle"

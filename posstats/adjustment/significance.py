@@ -27,6 +27,9 @@ BLUNDER_POWER = 0.80
 HIGH_CORRELATION = 0.95
 LEAST_REDUNDANCY = 0.01
 """Of an observation that is tested: below, its error stays in the unknowns to 99 %."""
+LEAST_CONTROL_REDUNDANCY = 1e-6
+"""The same of a control point, beside rounding: a survey is far more accurate than what tie points
+and POS say of the point, but gross errors show all the same."""
 MOST_EFFECT = 10.0
 """Standard deviations of an observation by which an undetermined free parameter can move it."""
 
@@ -270,6 +273,7 @@ def local_tests(
         result.redundancy_control,
         shift,
         "m",
+        LEAST_CONTROL_REDUNDANCY,
     )
     return tests
 
@@ -283,15 +287,19 @@ def control_moments(problem: BundleProblem, result: AdjustedBundle) -> tuple[_Fl
 
 
 def _tested(
-    gradient: _Floats, curvature: _Floats, redundancy: _Floats, shift: float, unit: str
+    gradient: _Floats,
+    curvature: _Floats,
+    redundancy: _Floats,
+    shift: float,
+    unit: str,
+    least: float = LEAST_REDUNDANCY,
 ) -> LocalTest:
-    checked = redundancy >= LEAST_REDUNDANCY
-    curvature = np.where(checked, curvature, np.nan)
+    curvature = np.where(redundancy >= least, curvature, np.nan)
     root = np.sqrt(curvature)
     return LocalTest(
         gradient / root,
         -gradient / curvature,
         shift / root,
-        int((np.isfinite(redundancy) & ~checked).sum()),
+        int((redundancy < LEAST_REDUNDANCY).sum()),
         unit,
     )

@@ -19,6 +19,7 @@ from posstats.accuracy import (
     differences,
     surveyed_check_points,
 )
+from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import ControlChoice, chosen_control
@@ -170,10 +171,10 @@ def adjust_block(
     stated = replace(stated, bauer_radius_mm=settings.bauer_radius_mm)
     ids = block.orientations.image
     try:
-        _require_points(stated)
+        _require_points(tied, stated)
         rejected = _screened(stated, settings, report)
         report("adjustment", 0.3)
-        problem = without_rays(stated, rejected)
+        problem = without_rays(stated, rejected | _of_wrong_axes(stated))
         adjusted = adjust(problem)
         _refuse_mistakes(tied, stated, control, adjusted.sigma0)
         problem = with_fitting_priors(problem, adjusted)
@@ -230,9 +231,18 @@ def _some(surveyed: GroundPoints, keep: _Bools) -> GroundPoints:
     )
 
 
-def _require_points(stated: BundleProblem) -> None:
-    if len(stated.point) == 0:
-        raise GeometryError("the rays of no point meet in front of the images: check the POS")
+def _of_wrong_axes(stated: BundleProblem) -> _Bools:
+    """(m,) rays of images with wrong axes, with which nothing converges; snooping names these."""
+    wrong: _Bools = np.isin(stated.image, images_with_wrong_axes(stated))
+    return wrong
+
+
+def _require_points(tied: Block, stated: BundleProblem) -> None:
+    if len(stated.point) > 0:
+        return
+    if np.bincount(tied.tie_points.point, minlength=1).max() < 2:
+        raise GeometryError("no tie or control point is measured in two images")
+    raise GeometryError("the rays of no point meet in front of the images: check the POS")
 
 
 def _screened(stated: BundleProblem, settings: AdjustmentSettings, report: Progress) -> _Bools:
@@ -280,7 +290,7 @@ def _result(
 ) -> Adjustment:
     tests = parameter_tests(problem, adjusted)
     orientations = _orientations(block, adjusted)
-    residuals, position, covariance = _check_points(block, problem, adjusted, orientations)
+    residuals, position, covariance = _check_points(block, stated, problem, adjusted, orientations)
     return Adjustment(
         block=block,
         settings=settings,
@@ -324,10 +334,16 @@ def _orientations(block: Block, adjusted: AdjustedBundle) -> Orientations:
 
 
 def _check_points(
-    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, orientations: Orientations
+    block: Block,
+    stated: BundleProblem,
+    problem: BundleProblem,
+    adjusted: AdjustedBundle,
+    orientations: Orientations,
 ) -> tuple[CheckPointResiduals, _Floats, _Floats]:
     """Residuals, positions and covariances of the check points."""
     given, points = surveyed_check_points(block)
+    wrong = np.isin(block.tie_points.image, images_with_wrong_axes(stated))
+    block = replace(block, tie_points=block.tie_points.subset(~wrong))
     computed, covariance = intersect_apart(block, problem, adjusted, orientations, points)
     covariance *= scale(adjusted) ** 2
     residuals = differences(block, ORIENTATION, given, computed, covariance)
