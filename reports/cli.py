@@ -3,46 +3,16 @@
 import os
 import signal
 import sys
-from collections.abc import Callable
-from functools import wraps
 from pathlib import Path
 from types import FrameType
-from typing import Any, Literal
+from typing import Literal
 
 import click
 
 from posstats import __version__
-from posstats.errors import PosstatsError
 
-
-class _Folder(click.Path):
-    """A path that is not empty: an empty one would be the working directory."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if value == "":
-            self.fail("is empty; . is the working directory", param, ctx)
-        return super().convert(value, param, ctx)
-
-
-FOLDER = _Folder(path_type=Path)
-
-
-def _clear_errors(command: Callable[..., None]) -> Callable[..., None]:
-    """Turn the package's errors and the system's into one message and exit code 1."""
-
-    @wraps(command)
-    def run(*args: Any, **kwargs: Any) -> None:
-        try:
-            command(*args, **kwargs)
-        except PosstatsError as error:
-            raise click.ClickException(str(error)) from error
-        except OSError as error:
-            where = f": {error.filename}" if error.filename else ""
-            raise click.ClickException(f"{error.strerror or error}{where}") from error
-        except MemoryError as error:
-            raise click.ClickException("not enough memory for this block") from error
-
-    return run
+from . import acceptance_cli
+from .command_line import FOLDER, clear_errors, default_out
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -98,7 +68,7 @@ def cli() -> None:
 )
 @click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
-@_clear_errors
+@clear_errors
 def analyse(
     block: Path,
     out: Path | None,
@@ -124,7 +94,7 @@ def analyse(
     from .analyse_command import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
-    target = out or _default_out(block)
+    target = out or default_out(block)
     for line in analyse_block(block, target, settings, calibration, pdf=not no_pdf):
         click.echo(line)
 
@@ -170,7 +140,7 @@ def analyse(
     help="Take out contradicting image rays before data snooping.",
 )
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
-@_clear_errors
+@clear_errors
 def adjust(
     block: Path,
     out: Path | None,
@@ -209,7 +179,7 @@ def adjust(
         drop_insignificant=drop_insignificant,
         robust=robust,
     )
-    target = out or _default_out(block)
+    target = out or default_out(block)
     for line in adjust_folder(block, target, settings, calibration, pdf=not no_pdf):
         click.echo(line)
 
@@ -230,7 +200,7 @@ def adjust(
     help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
 )
 @click.option("--lever-arm", is_flag=True, help="Estimate the lever arm too.")
-@_clear_errors
+@clear_errors
 def calibrate(
     block: Path,
     out: Path,
@@ -264,7 +234,7 @@ def calibrate(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
 )
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
-@_clear_errors
+@clear_errors
 def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
 
@@ -288,7 +258,7 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
 )
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
-@_clear_errors
+@clear_errors
 def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the second source paper: POS errors removed in the bundle adjustment.
 
@@ -317,7 +287,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
 @click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
 @click.option("--seed", type=click.IntRange(min=0), help="Random seed instead of the scenario's.")
-@_clear_errors
+@clear_errors
 def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | None) -> None:
     """Simulate a block of known truth, as a block folder.
 
@@ -344,7 +314,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
 
 @cli.command()
 @click.argument("block", type=FOLDER)
-@_clear_errors
+@clear_errors
 def check(block: Path) -> None:
     """Validate the block folder BLOCK and print a summary.
 
@@ -360,211 +330,8 @@ def check(block: Path) -> None:
         click.echo(line)
 
 
-class _Length(click.ParamType):
-    """A length with its unit, read as metres."""
-
-    name = "length"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        from .accept_command import length_m
-
-        if isinstance(value, float):
-            return value
-        try:
-            return length_m(value)
-        except ValueError as error:
-            self.fail(str(error), param, ctx)
-
-
-LENGTH = _Length()
-
-
-@cli.command()
-@click.argument("source", type=FOLDER, metavar="BLOCK|results.json")
-@click.option("--profile", metavar="NAME|FILE", help="Profile to judge by: see posstats profiles.")
-@click.option(
-    "--contract",
-    type=FOLDER,
-    metavar="FILE",
-    help="Contract (TOML): parties, product, and limits of its own that extend a profile.",
-)
-@click.option(
-    "--class",
-    "class_both",
-    type=LENGTH,
-    metavar="LENGTH",
-    help="Accuracy class of the product, horizontal and vertical, such as 10cm.",
-)
-@click.option("--class-h", type=LENGTH, metavar="LENGTH", help="Horizontal accuracy class.")
-@click.option("--class-v", type=LENGTH, metavar="LENGTH", help="Vertical accuracy class.")
-@click.option("--gsd", type=LENGTH, metavar="LENGTH", help="Ground sampling distance.")
-@click.option("--scale", type=click.FloatRange(1), metavar="N", help="Map scale 1:N, such as 5000.")
-@click.option("--terrain", type=click.Choice(["flat", "mountain"]), help="Kind of terrain.")
-@click.option(
-    "--orientation",
-    type=click.Choice(["pos", "selected", "adjusted", "bundle"]),
-    help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
-    "results hold]",
-)
-@click.option(
-    "--language",
-    type=click.Choice(["en", "zh"]),
-    default="en",
-    show_default=True,
-    help="Of the document.",
-)
-@click.option(
-    "--templates",
-    type=FOLDER,
-    metavar="DIR",
-    help="Folder with a logo, a letterhead or other templates of yours.",
-)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
-@click.option("--no-pdf", is_flag=True, help="Write the document as HTML only.")
-@click.pass_context
-@_clear_errors
-def accept(
-    context: click.Context,
-    source: Path,
-    profile: str | None,
-    contract: Path | None,
-    class_both: float | None,
-    class_h: float | None,
-    class_v: float | None,
-    gsd: float | None,
-    scale: float | None,
-    terrain: Literal["flat", "mountain"] | None,
-    orientation: str | None,
-    language: str,
-    templates: Path | None,
-    out: Path | None,
-    no_pdf: bool,
-) -> None:
-    """Judge a block, or its results.json, by a standard or contract, and certify the verdict.
-
-    Writes acceptance.html, acceptance.pdf (for the archive, with all data inside) and
-    acceptance.json. Files of the same names are replaced. Exit code 0: accepted; 3: rejected;
-    4: not assessable; 1: an error.
-
-    \b
-    Example:
-      posstats accept flight7 --profile asprs-2024 --class 10cm
-      posstats accept report/results.json --contract contract.toml --language zh
-    """
-    from posstats.acceptance.product import Product
-
-    from .accept_command import EXIT_CODES, Wish, judge
-
-    if class_both is not None and (class_h is not None or class_v is not None):
-        raise click.UsageError("give either --class, or --class-h and --class-v")
-    product = Product(
-        class_h_m=class_both or class_h,
-        class_v_m=class_both or class_v,
-        gsd_m=gsd,
-        map_scale=scale,
-        terrain=terrain,
-    )
-    wish = Wish(profile, contract, product, orientation, language, templates)
-    verdict, lines = judge(source, out or _default_out(_block_of(source)), wish, pdf=not no_pdf)
-    for line in lines:
-        click.echo(line)
-    context.exit(EXIT_CODES[verdict])
-
-
-def _block_of(source: Path) -> Path:
-    """The block folder, or the folder of a results.json: what an output folder is named after."""
-    return source if source.is_dir() else source.resolve().parent
-
-
-@cli.command()
-@click.argument("name", required=False)
-@_clear_errors
-def profiles(name: str | None) -> None:
-    """List the acceptance profiles, or print the profile NAME with its sources.
-
-    NAME may also be a contract or profile file, which is validated: exit code 1 with the findings
-    if it is refused.
-
-    \b
-    Example:
-      posstats profiles
-      posstats profiles asprs-2024
-      posstats profiles contract.toml
-    """
-    from .profiles_command import describe_profile, list_profiles
-
-    for line in list_profiles() if name is None else describe_profile(name):
-        click.echo(line)
-
-
-@cli.command()
-@click.argument("file", type=FOLDER, metavar="FILE.pdf")
-@click.option(
-    "--p12", type=FOLDER, required=True, metavar="KEY.p12", help="Private key and certificate."
-)
-@click.option(
-    "--passphrase-file",
-    type=FOLDER,
-    metavar="FILE",
-    help="Its first line opens the key.  [default: ask for the passphrase]",
-)
-@click.option("--out", type=FOLDER, required=True, metavar="SIGNED.pdf", help="File to write.")
-@_clear_errors
-def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None:
-    """Sign the acceptance document FILE.pdf, as a copy; the original is left alone.
-
-    Needs the optional extra: pip install 'posstats[sign]'. No network is used. A document that is
-    signed already gets a further signature.
-
-    \b
-    Example:
-      posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
-    """
-    from .sign_command import sign_file
-
-    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
-        click.echo(line)
-
-
-@cli.command()
-@click.argument("file", type=FOLDER, metavar="FILE.pdf")
-@click.option(
-    "--inputs", type=FOLDER, metavar="BLOCK", help="Compare with this block folder, and recompute."
-)
-@click.option(
-    "--trust", type=FOLDER, metavar="CERT.pem", help="Whom to trust: certificates of authorities."
-)
-@_clear_errors
-def verify(file: Path, inputs: Path | None, trust: Path | None) -> None:
-    """Verify the acceptance document FILE.pdf: a line a question.
-
-    Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
-    the pages, and with the input files. Exit code 0 if all that was asked holds, 1 otherwise.
-
-    \b
-    Example:
-      posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
-    """
-    from .verification import holds
-    from .verify_command import verify_file
-
-    answers = verify_file(file, inputs, trust)
-    for each in answers:
-        click.echo(each.line)
-    if not holds(answers):
-        sys.exit(1)
-
-
-def _ask_passphrase() -> str:
-    """Hidden, from a terminal only: a pipe would leave it in a script."""
-    if not sys.stdin.isatty():
-        raise PosstatsError("no terminal to ask for the passphrase: give --passphrase-file")
-    answer: str = click.prompt("Passphrase", hide_input=True, default="", show_default=False)
-    return answer
-
-
-def _default_out(block: Path) -> Path:
-    return Path("out") / block.resolve().name
+for command in acceptance_cli.COMMANDS:
+    cli.add_command(command)
 
 
 def _terminate(_signal: int, _frame: FrameType | None) -> None:
