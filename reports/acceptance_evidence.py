@@ -6,8 +6,8 @@ from typing import Any
 from . import acceptance_units as units
 from . import format as fmt
 from .acceptance_words import Words
-from .results_view import Results, Row, decided_by_strip, first, rows, strips_with_models
-from .tables import Column, Table, count_column, number_column, p_column, text_column
+from .results_view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
+from .tables import Column, Table, count_column, number_column, p_column, prose_column, text_column
 
 PARALLAX_OF = {"pos": "pos_px", "selected": "corrected_px"}
 RELATIVE = "independent_px"
@@ -104,7 +104,7 @@ def decisions(words: Words, results: Results) -> Table:
         p_column("p", [_decisive_p(*both) for both in zip(shown, fits, strict=True)]),
         text_column(words.text("column.decision"), [words.of("form", r["form"]) for r in shown]),
     )  # fmt: skip
-    notes = [words.text("note.decisions", rules=str(results["settings"].get("rules") or ""))]
+    notes = [words.text("note.decisions", rules=_rules(words, results))]
     if len(shown) < len(chosen):
         notes.append(words.text("note.decisions_shown", shown=fmt.count(len(shown)),
                                 total=fmt.count(len(chosen))))  # fmt: skip
@@ -114,16 +114,16 @@ def decisions(words: Words, results: Results) -> Table:
 
 
 def observability(words: Words, results: Results) -> Table:
-    """What the tie points leave open, by scope."""
-    kept = [row for row in rows(results, "observability") if row["unobservable"]]
-    named = [
-        words.catalogue.joined(words.known("motion", motion) for motion in row["unobservable"])
-        for row in kept
-    ]
+    """What the tie points leave open; scopes of which the same is to be said share a row."""
+    scopes: dict[tuple[str, int], list[str]] = {}
+    for row in rows(results, "observability"):
+        if row["unobservable"]:
+            motions = words.catalogue.joined(words.known("motion", m) for m in row["unobservable"])
+            scopes.setdefault((motions, len(row["images"])), []).append(_scope(words, row["scope"]))
     columns = (
-        text_column(words.text("column.scope"), [_scope(words, row["scope"]) for row in kept]),
-        text_column(words.text("column.unobservable"), named),
-        count_column(words.text("column.images_open"), [len(row["images"]) for row in kept]),
+        prose_column(words.text("column.scope"), map(words.catalogue.joined, scopes.values())),
+        prose_column(words.text("column.unobservable"), [motions for motions, _ in scopes]),
+        count_column(words.text("column.images_open"), [n for _, n in scopes]),
     )
     return Table("observability", words.text("table.observability"), columns)
 
@@ -193,6 +193,10 @@ def _decisive_p(decision: Row, fit: Row) -> float | None:
     key = "gls_p_value" if decision.get("fit") == "gls" else "p_value"
     value: float | None = fit.get("constant_p_value" if decision["form"] == "constant" else key)
     return value
+
+
+def _rules(words: Words, results: Results) -> str:
+    return words.known("setting_value", setting(results, "rules", "paper"))
 
 
 def _scope(words: Words, scope: str) -> str:

@@ -61,10 +61,9 @@ def _rendered(
     lost = unshown(acceptance, results)
     words = catalogue(acceptance["language"])
     environment = acceptance_templates.environment(templates, words)
-    values = {
-        "report": build(acceptance, _drawable(results, lost), lost),
-        "css": _stylesheet(acceptance_templates.page_number_css(words, acceptance["document_id"])),
-    }
+    document = build(acceptance, _drawable(results, lost), lost)
+    marks = acceptance_templates.page_number_css(words, document.document_id, document.mark)
+    values = {"report": document, "css": _stylesheet(marks)}
     # The text tells which glyphs to embed; so it is made twice.
     text = acceptance_templates.render(environment, faces=(), **values)
     if templates:

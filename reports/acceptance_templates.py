@@ -108,12 +108,16 @@ def page_words(catalogue: Catalogue) -> pages.PageWords:
     )
 
 
-def page_number_css(catalogue: Catalogue, document_id: str) -> Markup:
-    """Page number and document id in the margin of every page."""
+def page_number_css(catalogue: Catalogue, *marks: str) -> Markup:
+    """Page number and marks (document id, simulated data) in the margin of every page.
+
+    A browser prints them too; of the running header it knows nothing.
+    """
     said = [catalogue.text(f"page.{place}") for place in ("before", "between", "after")]
     before, between, after = (_css_text(text) for text in said)
+    left = _css_text(" · ".join(filter(None, marks)))
     return Markup(  # noqa: S704 - texts as CSS strings
-        f"@page {{ @bottom-left {{ content: {_css_text(document_id)}; }} @bottom-right {{ content:"
+        f"@page {{ @bottom-left {{ content: {left}; }} @bottom-right {{ content:"
         f" {before} counter(page) {between} counter(pages) {after}; }} }}"
     )
 
