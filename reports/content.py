@@ -10,10 +10,11 @@ from .tables import Table
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A paragraph of plain text."""
+    """A paragraph of plain text, perhaps with a word before it that says what it is about."""
 
     kind: ClassVar[str] = "paragraph"
     text: str
+    lead: str = ""
 
 
 @dataclass(frozen=True)

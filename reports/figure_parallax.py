@@ -25,6 +25,8 @@ from .results_view import (
     verdict,
 )
 
+AXES = ("strip", "mean RMS vertical parallax")
+
 _MODEL_SERIES = (
     ("pos_px", "POS as delivered", style.VERMILLION, "o"),
     ("corrected_px", "after the selected correction", style.BLUE, "s"),
@@ -132,7 +134,9 @@ def _bars(label: str, per_strip: Sequence[Row], unit: str) -> Bars:
     return Bars(label, known, mean_over_models(per_strip, key))
 
 
-def bar_figure(groups: Sequence[Bars], strips: Sequence[str], unit: str) -> Figure:
+def bar_figure(
+    groups: Sequence[Bars], strips: Sequence[str], unit: str, names: tuple[str, str] = AXES
+) -> Figure:
     """Groups of bars side by side, one bar per strip, on a logarithmic scale.
 
     Up to the height of the last group, which has to be the one that no POS angle can spoil, bars
@@ -146,6 +150,8 @@ def bar_figure(groups: Sequence[Bars], strips: Sequence[str], unit: str) -> Figu
         In the order of showing; those without values are left out.
     unit
         Of the heights.
+    names
+        Of the axes; that of the heights is followed by their unit.
     """
     shown = [group for group in groups if group.of_strip]
     strips = [strip for strip in strips if any(strip in group.of_strip for group in shown)]
@@ -156,9 +162,9 @@ def bar_figure(groups: Sequence[Bars], strips: Sequence[str], unit: str) -> Figu
     pitch = len(strips) + max(1.0, 0.15 * len(strips))
     for k, group in enumerate(shown):
         _group(axis, k * pitch, group, groups[-1], strips, unit)
-    _strip_labels(axis, labels, [k * pitch for k in range(len(shown))])
+    _strip_labels(axis, labels, [k * pitch for k in range(len(shown))], names[0])
     axis.set_xlim(-0.8, (len(shown) - 1) * pitch + len(strips) - 0.2)
-    axis.set_ylabel(f"mean RMS vertical parallax, {unit}")
+    axis.set_ylabel(f"{names[1]}, {unit}")
     return figure
 
 
@@ -177,7 +183,7 @@ def _group(
               ha="center", va="bottom")  # fmt: skip
 
 
-def _strip_labels(axis: Axes, labels: list[str], lefts: Sequence[float]) -> None:
+def _strip_labels(axis: Axes, labels: list[str], lefts: Sequence[float], name: str) -> None:
     """Ids under the bars of every group; where there is no room for all, under some."""
     longest = max(len(label) for label in labels)
     turned = longest > 3
@@ -187,7 +193,7 @@ def _strip_labels(axis: Axes, labels: list[str], lefts: Sequence[float]) -> None
     axis.set_xticks(places, labels[::step] * len(lefts), rotation=90 if turned else 0,
                     fontsize=6.5 if turned else 7.5)  # fmt: skip
     axis.tick_params(axis="x", length=0)
-    axis.set_xlabel("strip")
+    axis.set_xlabel(name)
 
 
 def _strip_bands(axis: Axes, strip_of_model: Sequence[str]) -> None:

@@ -96,7 +96,7 @@ def difference_plan(
     view = view_of(rows(results, "images") or panels[0][1])
     figure, axes = _panels(view, len(panels))
     for axis, (words, part) in zip(axes, panels, strict=True):
-        _images_behind(axis, view, results)
+        images_behind(axis, view, results)
         with_north = view.turned and axis is axes[0]
         _differences(axis, view, part, row=1 if with_north else 0, centred=centred)
         axis.set_title(words, loc="right" if view.turned else "left", pad=4 if view.turned else 20)
@@ -254,7 +254,8 @@ def _overlap(one: Label, other: Label) -> bool:
     return bool(apart[0] < width + 2.0 and apart[1] < LINE_PT)
 
 
-def _images_behind(axis: Axes, view: PlanView, results: Results) -> None:
+def images_behind(axis: Axes, view: PlanView, results: Results) -> None:
+    """Exposure stations as pale dots, for orientation."""
     places = [(row["x_m"], row["y_m"]) for row in rows(results, "images")]
     if places:
         axis.plot(*view.drawn(places), **style.dots(style.LIGHT, 1.6))

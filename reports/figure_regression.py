@@ -53,11 +53,15 @@ Lines = dict[str, tuple[Line | None, Line | None]]
 
 @dataclass(frozen=True)
 class Panel:
-    """Axes on which angle errors, shown in a unit, stand over the time since a start."""
+    """Axes on which angle errors, shown in a unit, stand over the time since a start.
+
+    `labels` name the OLS and the GLS line in the legend.
+    """
 
     axis: Axes
     unit: fmt.Unit
     start_s: float
+    labels: tuple[str, str] = (OLS_LABEL, GLS_LABEL)
 
     def points(
         self, time_s: npt.ArrayLike, error_rad: npt.ArrayLike, label: str, look: dict[str, Any]
@@ -78,7 +82,7 @@ class Panel:
         base = zero.at(grid) if zero else 0.0
         # Both black: lines that agree look like one.
         for line, label, dash, shade in (
-            (ols, OLS_LABEL, "-", 0.22), (gls, GLS_LABEL, (0, (4, 2)), 0.13)
+            (ols, self.labels[0], "-", 0.22), (gls, self.labels[1], (0, (4, 2)), 0.13)
         ):  # fmt: skip
             if line:
                 self._line(grid, line.at(grid) - base, line.half_width(grid), label, dash, shade)
@@ -147,9 +151,9 @@ def _regression(results: Results, frame: str, angle: str) -> style.Drawing | Non
     figure = style.new_figure(3.7)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
     start = min(row["time_s"] for row in data)
-    lines = _fitted(results, frame, angle)
+    lines = fitted_lines(results, frame, angle)
     panel = Panel(upper, fmt.angle_unit(row[f"{angle}_rad"] for row in data), start)
-    _draw_errors(panel, data, angle, lines)
+    draw_errors(panel, data, angle, lines)
     for row in rows(results, "selection", frame=frame, angle=angle, form="constant"):
         _draw_constant(panel, results, row)
     panel.keep_large([row[f"{angle}_rad"] for row in data])
@@ -157,7 +161,7 @@ def _regression(results: Results, frame: str, angle: str) -> style.Drawing | Non
     _draw_residuals(lower, start, data, angle, lines)
     lower.set_xlabel("time since the first exposure shown, s")
     figure.align_ylabels([upper, lower])
-    _legend(figure, upper)
+    legend(figure, upper)
     caption = _caption(angle, frame, start, bool(lines))
     name = f"regression_{frame}_{angle}"
     return style.finish(figure, name, f"Regression of the error of {angle} on time", caption)
@@ -169,7 +173,7 @@ def used_errors(results: Results, angle: str) -> list[Row]:
             and not fmt.is_missing(row.get(f"{angle}_rad"))]  # fmt: skip
 
 
-def _fitted(results: Results, frame: str, angle: str) -> Lines:
+def fitted_lines(results: Results, frame: str, angle: str) -> Lines:
     """Lines of the scope the analysis decided at: the block's, or one per strip."""
     by_strip = decided_by_strip(results)
     fitted = {}
@@ -179,11 +183,14 @@ def _fitted(results: Results, frame: str, angle: str) -> Lines:
     return fitted
 
 
-def _draw_errors(panel: Panel, data: Sequence[Row], angle: str, lines: Lines) -> None:
+def draw_errors(
+    panel: Panel, data: Sequence[Row], angle: str, lines: Lines, strip_words: str = "strip {strip}"
+) -> None:
+    """Errors of an angle with the fitted lines; `strip_words` names a strip in the legend."""
     for strip, part, look in _by_strip(data):
         errors = [row[f"{angle}_rad"] for row in part]
-        panel.points([row["time_s"] for row in part], errors, f"strip {style.shortened(strip)}",
-                     look)  # fmt: skip
+        label = strip_words.format(strip=style.shortened(strip))
+        panel.points([row["time_s"] for row in part], errors, label, look)
     for scope, (ols, gls) in lines.items():
         times = _times(data, scope)
         if times:
@@ -233,7 +240,8 @@ def _draw_constant(panel: Panel, results: Results, decision: Row) -> None:
                            label="constant taken off")  # fmt: skip
 
 
-def _legend(figure: Figure, axis: Axes) -> None:
+def legend(figure: Figure, axis: Axes) -> None:
+    """Strips and lines under the figure."""
     handles, labels = legend_entries(axis)
     longest = max(len(label) for label in labels)
     figure.legend(handles, labels, loc="outside lower center",

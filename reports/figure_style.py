@@ -14,6 +14,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
 from . import format as fmt
+from .fonts import FAMILY
 from .svg import embeddable
 
 # Okabe & Ito (2008), "Color Universal Design": told apart by colour-blind readers; the markers
@@ -35,7 +36,6 @@ STRIP_COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 STRIP_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 _RC: dict[str, Any] = {
-    "font.family": "DejaVu Sans",
     "font.size": 8.0,
     "axes.titlesize": 8.5,
     "axes.labelsize": 8.0,
@@ -75,9 +75,12 @@ class Drawing:
     svg: str
 
 
-def style() -> Any:
-    """Context in which figures are made: the settings of the house, and no others."""
-    settings: dict[Any, Any] = {**matplotlib.rcParamsDefault, **_RC}
+def style(families: Sequence[str] = (FAMILY,)) -> Any:
+    """Context in which figures are made: the settings of the house, and no others.
+
+    `families` are those of their texts, in the order of preference.
+    """
+    settings: dict[Any, Any] = {**matplotlib.rcParamsDefault, **_RC, "font.family": [*families]}
     del settings["backend"]  # not ours to choose; figures are drawn without one
     return matplotlib.rc_context(settings)
 

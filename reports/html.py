@@ -1,9 +1,12 @@
 """The document as one self-contained HTML page."""
 
+import re
+from dataclasses import dataclass
 from importlib import resources
+from typing import TypedDict
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from . import fonts
 from .document import ReportDocument
@@ -11,6 +14,26 @@ from .figure_style import Drawing
 from .tables import Column
 
 TEMPLATE = "report.html.j2"
+
+
+class _WhiteSpace(TypedDict):
+    trim_blocks: bool
+    lstrip_blocks: bool
+    keep_trailing_newline: bool
+
+
+WHITE_SPACE = _WhiteSpace(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True)
+
+
+@dataclass(frozen=True)
+class PageWords:
+    """Words that the templates themselves need; `stop` stands after the number of a table."""
+
+    language: str = "en"
+    contents: str = "Contents"
+    table: str = "Table"
+    figure: str = "Figure"
+    stop: str = "."
 
 
 def render(document: ReportDocument) -> str:
@@ -23,15 +46,20 @@ def render(document: ReportDocument) -> str:
         loader=PackageLoader("posstats.templates", ""),
         autoescape=True,
         undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+        **WHITE_SPACE,
     )
+    dress(environment, PageWords())
+    css = resources.files("posstats.templates").joinpath("report.css").read_text(encoding="utf-8")
+    template = environment.get_template(TEMPLATE)
+    return template.render(report=document, css=Markup(css), faces=fonts.faces(document.text))  # noqa: S704
+
+
+def dress(environment: Environment, words: PageWords) -> None:
+    """Give an environment what the common templates use."""
     environment.filters["svg"] = _svg
     environment.filters["cell_class"] = _cell_class
-    css = resources.files("posstats.templates").joinpath("report.css").read_text(encoding="utf-8")
-    uris = {weight: fonts.data_uri(document.text, weight) for weight in fonts.WEIGHTS}
-    return environment.get_template(TEMPLATE).render(report=document, css=Markup(css), fonts=uris)  # noqa: S704
+    environment.filters["typeset"] = _typeset
+    environment.globals["words"] = words
 
 
 def _cell_class(column: Column) -> Markup:
@@ -39,6 +67,12 @@ def _cell_class(column: Column) -> Markup:
     names = [str(column.align)] if column.align != "left" else []
     names += ["long"] if column.has_long_words else []
     return Markup(f' class="{" ".join(names)}"' if names else "")  # noqa: S704 - names of ours
+
+
+def _typeset(text: str) -> Markup:
+    """A text with true subscripts (RMSE_H) and its commands (in backquotes) set apart."""
+    marked = re.sub(r"\bRMSE_(3D|[A-Z])(?![A-Za-z0-9])", r"RMSE<sub>\1</sub>", str(escape(text)))
+    return Markup(re.sub(r"`([^`<>]+)`", r"<code>\1</code>", marked))  # noqa: S704 - escaped before
 
 
 def _svg(drawing: Drawing) -> Markup:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, Transform, blended_transform_factory
 
@@ -20,6 +22,7 @@ Point = Sequence[float]  # east and north in metres
 
 PAD = 0.07
 LONG = 1.6  # north over east from which a plan is turned
+HEAD = 0.011  # of the larger side of a plan: an arrowhead among many
 NARROW = 0.9  # width over height below which coordinates would touch side by side
 
 
@@ -59,10 +62,9 @@ class PlanView:
         up = self.east - y if self.turned else y - self.south
         return np.column_stack([x - self.left_m, up])
 
-    def dress(self, axis: Axes) -> None:
-        """Limits, scale, ticks and names of the coordinates."""
+    def dress(self, axis: Axes, names: tuple[str, str] = ("east, m", "north, m")) -> None:
+        """Limits, scale, ticks and the names of the coordinates (east, north)."""
         sides = [(self.west, self.east), (self.south, self.north)]
-        names = ["east, m", "north, m"]
         if self.turned:
             sides, names = [sides[1], sides[0][::-1]], names[::-1]
         axis.set(xlim=sides[0], ylim=sides[1], xlabel=names[0], ylabel=names[1], aspect="equal")
@@ -123,6 +125,30 @@ def difference_arrows(
     tips = view.drawn(start[known] + scale * difference[known]).T
     for tail, tip in zip(tails, tips, strict=True):
         axis.annotate("", tuple(tip), tuple(tail), arrowprops=look, zorder=4)
+
+
+def many_arrows(
+    axis: Axes,
+    view: PlanView,
+    start: FloatArray,
+    difference: FloatArray,
+    scale: float,
+    colour: str,
+    line: str = "-",
+) -> None:
+    """The same for hundreds of known differences: two elements of the page, small heads."""
+    shaft = scale * difference
+    tips = start + shaft
+    polylines(axis, view, [list(ends) for ends in zip(start, tips, strict=True)],
+              color=colour, lw=0.8, ls=line, solid_capstyle="butt", zorder=4)  # fmt: skip
+    length = np.maximum(np.hypot(*shaft.T), 1e-300)[:, None]
+    head = np.minimum(HEAD * max(view.width_m, view.height_m), 0.5 * length)
+    along = head * shaft / length
+    across = 0.4 * np.column_stack([-along[:, 1], along[:, 0]])
+    corners = np.stack([tips, tips - along + across, tips - along - across, tips], axis=1)
+    drawn = view.drawn(corners.reshape(-1, 2)).T
+    codes = np.tile([Path.MOVETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY], len(start))
+    axis.add_patch(PathPatch(Path(drawn, codes), fc=colour, ec="none", zorder=4))
 
 
 def scale_arrow(

@@ -40,6 +40,8 @@ def embeddable(svg: str, name: str, title: str, share: float) -> str:
     svg = re.sub(r"\bd=\"([^\"]*)\"", lambda match: f'd="{_compact(match[1])}"', svg)
     svg = re.sub(r" transform=\"rotate\(-0 [^)]*\)\"", "", svg)
     svg = _without_bare_groups(svg)
+    # WeasyPrint does not expect blanks between families.
+    svg = re.sub(r"font-family: [^;\"]*", lambda match: match[0].replace(", ", ","), svg)
     svg = re.sub(r"(\bid=\"|url\(#|href=\"#)", rf"\g<1>{name}-", svg)
     label = escape(title)
     style = f"--share: {share:.3f}; stroke-linejoin: round; stroke-linecap: butt"

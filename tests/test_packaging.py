@@ -46,7 +46,7 @@ def test_the_wheel_holds_every_file_of_the_package(wheel):
     }
     for folder, place in places.items():
         for path in (ROOT / folder).rglob("*"):
-            if path.is_file() and path.suffix in {".py", ".toml", ".j2", ".css", ".typed"}:
+            if path.is_file() and path.suffix in {".py", ".toml", ".j2", ".css", ".po", ".typed"}:
                 assert f"{place}/{path.relative_to(ROOT / folder)}" in shipped
 
 

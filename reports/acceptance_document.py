@@ -1,0 +1,208 @@
+"""What the templates of the acceptance document see: frozen, and nothing else."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from . import acceptance_tables as tables
+from . import acceptance_units as units
+from . import acceptance_words as wording
+from . import format as fmt
+from .acceptance_figures import draw
+from .acceptance_sections import parts
+from .acceptance_words import Words
+from .cjk import is_cjk
+from .document import Section, numbered
+from .figure_style import shortened
+from .key_figures import KeyFigure
+from .results_view import Results
+from .tables import Table
+
+PARTIES = ("inspector", "contractor", "client")
+STATED = ("title", "number", "client", "contractor", "inspector", "flight", "flight_date", "sensor",
+          "place", "remarks")  # fmt: skip
+LONG_SUBJECT, LONG_VALUE = 64, 60  # letters
+COUNTED = ("n_images", "n_strips", "n_models", "n_check_points")
+KEYS = (("rmse_h", "product_rmse_h"), ("rmse_v", "product_rmse_v"), ("n_check_points",))
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A name and a value."""
+
+    label: str
+    value: str
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the value needs the whole width of the page."""
+        return _width(self.value) > LONG_VALUE
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict as it stands on the first page.
+
+    `kind` is ``accepted``, ``rejected`` or ``not-assessable``; `sign` and `word` say the same.
+    """
+
+    kind: str
+    sign: str
+    word: str
+    summary: str
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A party that signs: its role and its name, if known."""
+
+    role: str
+    name: str
+
+
+@dataclass(frozen=True)
+class AcceptanceDocument:
+    """All that templates see.
+
+    `subject` is what was inspected, `identity` which document this is, `facts` who and what is
+    concerned, `basis` what was judged by what, `statement` the standard's own words, `short` the
+    requirements for the first page.
+    """
+
+    title: str
+    subject: str
+    delivered: str
+    mark: str
+    created: str
+    version: str
+    document_id: str
+    identity: tuple[Fact, ...]
+    verdict: Verdict
+    basis: tuple[Fact, ...]
+    statement: str
+    facts: tuple[Fact, ...]
+    key_figures: tuple[KeyFigure, ...]
+    short: Table
+    sections: tuple[Section, ...]
+    signatures: tuple[Signature, ...]
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the subject needs smaller letters."""
+        return _width(self.subject) > LONG_SUBJECT
+
+    @property
+    def running(self) -> str:
+        """The subject as it stands above every page, its middle left out if it is long."""
+        wide = _width(self.subject) / max(len(self.subject), 1)
+        return shortened(self.subject, int(LONG_SUBJECT / max(wide, 1.0)))
+
+
+def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") -> AcceptanceDocument:
+    """Make the document.
+
+    Parameters
+    ----------
+    acceptance
+        The dictionary of ``acceptance.json``.
+    results
+        The dictionary of ``results.json``.
+    unshown
+        Characters that no typeface at hand can show.
+    """
+    words = wording.words_of(acceptance)
+    drawings = draw(words, acceptance, results)
+    _, sections = numbered((), parts(words, acceptance, results, drawings, unshown))
+    contract, block = acceptance["contract"], acceptance["block"]
+    return AcceptanceDocument(
+        title=words.text("document.title"),
+        subject=str(contract.get("title") or block["name"]),
+        delivered=_delivered(words, block),
+        mark=words.text("mark.simulated") if block["simulated"] else "",
+        created=_date(acceptance),
+        version=str(acceptance["posstats_version"]),
+        document_id=str(acceptance["document_id"]),
+        identity=_identity(words, acceptance),
+        verdict=_verdict(words, acceptance),
+        basis=_basis(words, acceptance),
+        statement=str(acceptance["statement"] or ""),
+        facts=_facts(words, acceptance),
+        key_figures=_key_figures(words, acceptance),
+        short=tables.requirements_in_short(words, acceptance),
+        sections=sections,
+        signatures=tuple(
+            Signature(words.text(f"party.{party}"), str(contract.get(party) or ""))
+            for party in PARTIES
+        ),
+    )
+
+
+def _width(text: str) -> int:
+    """Width of a text in Latin letters; Chinese ones take two."""
+    return sum(2 if is_cjk(letter) else 1 for letter in text)
+
+
+def _date(acceptance: Mapping[str, Any]) -> str:
+    return str(acceptance.get("created") or "").partition("T")[0]
+
+
+def _delivered(words: Words, block: Mapping[str, Any]) -> str:
+    counted = [
+        words.counted(f"delivered.{key}", block[key])
+        for key in COUNTED
+        if block.get(key) is not None
+    ]
+    return words.text("delivered.between").join([str(block["name"]), *counted])
+
+
+def _verdict(words: Words, acceptance: Mapping[str, Any]) -> Verdict:
+    verdict = acceptance["verdict"]
+    return Verdict(
+        kind=verdict.replace(" ", "-"),
+        sign=wording.SIGNS[verdict],
+        word=words.of("verdict", verdict),
+        summary=wording.summary(words, acceptance),
+    )
+
+
+def _basis(words: Words, acceptance: Mapping[str, Any]) -> tuple[Fact, ...]:
+    """Standard, class, and the orientation with the reason for it."""
+    profile = acceptance["profile"]
+    standard = words.text("basis.edition", title=str(profile["title"]),
+                          edition=str(profile["edition"]))  # fmt: skip
+    orientation = words.text("basis.orientation_and_reason",
+                             orientation=words.orientation(acceptance["orientation"]),
+                             reason=wording.orientation_reason(words, acceptance))  # fmt: skip
+    said = (("standard", standard if profile["edition"] else str(profile["title"])),
+            ("class", wording.classes(words, acceptance)),
+            ("orientation", orientation))  # fmt: skip
+    return tuple(Fact(words.text(f"basis.{key}"), value) for key, value in said if value)
+
+
+def _identity(words: Words, acceptance: Mapping[str, Any]) -> tuple[Fact, ...]:
+    stated = (("document_id", acceptance["document_id"]), ("created", _date(acceptance)))
+    return tuple(Fact(words.text(f"fact.{key}"), str(value)) for key, value in stated if value)
+
+
+def _facts(words: Words, acceptance: Mapping[str, Any]) -> tuple[Fact, ...]:
+    contract = acceptance["contract"]
+    stated = [(key, contract.get(key)) for key in STATED if key != "title"]
+    return tuple(Fact(words.text(f"fact.{key}"), str(value)) for key, value in stated if value)
+
+
+def _key_figures(words: Words, acceptance: Mapping[str, Any]) -> tuple[KeyFigure, ...]:
+    """The first requirement of each kind that has a value."""
+    rows = {row["quantity"]: row for row in reversed(acceptance["requirements"])}
+    figures = []
+    for quantities in KEYS:
+        row = next((rows[q] for q in quantities if q in rows), None)
+        if row is not None and not fmt.is_missing(row["found"]):
+            figures.append(_key_figure(words, row))
+    return tuple(figures)
+
+
+def _key_figure(words: Words, row: Mapping[str, Any]) -> KeyFigure:
+    number, _, unit = units.pair(row, words.unit)[0].partition("\u00a0")
+    known = units.limit(row, words.unit)
+    remark = "" if known == fmt.MISSING else words.text("key.limit", limit=known)
+    return KeyFigure(words.of("quantity", row["quantity"]), number, unit, remark)
