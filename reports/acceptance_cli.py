@@ -11,7 +11,7 @@ from posstats.errors import PosstatsError
 from .command_line import FOLDER, clear_errors, default_out
 
 
-class _Length(click.ParamType):
+class _Length(click.ParamType[float]):
     """A length with its unit, read as metres."""
 
     name = "length"

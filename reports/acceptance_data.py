@@ -158,8 +158,8 @@ def _assembled(
     values["versions"]["weasyprint"] = version("weasyprint")
     values["attachments"] = [dict(row) for row in listed]
     # as it is read back, so that text of the same document is always the same
-    values = json.loads(json.dumps(values))
-    return values | {"document_id": document_id(values)}
+    read_back: Values = json.loads(json.dumps(values))
+    return read_back | {"document_id": document_id(read_back)}
 
 
 def statement(assessment: Assessment) -> str:

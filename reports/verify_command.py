@@ -2,7 +2,6 @@
 
 import datetime as dt
 from collections.abc import Sequence
-from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
@@ -10,6 +9,8 @@ from posstats import __version__
 from posstats.errors import PosstatsError
 from posstats.results import versions
 
+from .acceptance_data import reassess
+from .acceptance_report import render_document
 from .archive_file import read_file
 from .recomputation import recompute
 from .verification import verify
@@ -37,11 +38,10 @@ def verify_file(path: Path, inputs: Path | None, trust_file: Path | None) -> Seq
 
 def steps() -> Steps:
     """The steps of the installed version."""
-    report = import_module(".acceptance_report", __package__)
     return Steps(
         recompute=recompute,
-        reassess=report.reassess,
-        render_document=report.render_document,
+        reassess=reassess,
+        render_document=render_document,
         numbers={"posstats": __version__, **versions()},
         layout=f"posstats {__version__}, WeasyPrint {version('weasyprint')}",
     )
