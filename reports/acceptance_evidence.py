@@ -3,13 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from posstats.acceptance.evidence import PARALLAX_KEYS
+
 from . import acceptance_units as units
 from . import format as fmt
 from .acceptance_words import Words
 from .results_view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
 from .tables import Column, Table, count_column, number_column, p_column, prose_column, text_column
 
-PARALLAX_OF = {"pos": "pos_px", "selected": "corrected_px"}
 RELATIVE = "independent_px"
 SHOWN_DECISIONS = 40
 _DIFFERENCES = (("ΔX", "dx_m"), ("ΔY", "dy_m"), ("ΔZ", "dz_m"), ("ΔH", "dh_m"))
@@ -43,11 +44,12 @@ def parallax_by_strip(words: Words, results: Results, orientation: str) -> Table
         count_column(words.text("column.models"),
                      [*(len(part) for part in models.values()), len(rows(results, "models"))]),
     ]  # fmt: skip
-    for key, title in parallax_series(words, orientation):
+    series = parallax_series(words, results, orientation)
+    for key, title in series:
         every = [m[key] for m in rows(results, "models")]
         columns += _parallax(words, [*([m[key] for m in models[s]] for s in kept), every], title)
     notes = [words.text("note.parallax")]
-    if orientation not in PARALLAX_OF:
+    if PARALLAX_KEYS[orientation] not in dict(series):
         notes.append(
             words.text("note.parallax_missing", orientation=words.orientation(orientation))
         )
@@ -55,11 +57,12 @@ def parallax_by_strip(words: Words, results: Results, orientation: str) -> Table
     return Table("parallax", words.text("table.parallax"), tuple(columns), tuple(notes), strong)
 
 
-def parallax_series(words: Words, orientation: str) -> list[tuple[str, str]]:
+def parallax_series(words: Words, results: Results, orientation: str) -> list[tuple[str, str]]:
     """Keys of the models' parallax and their titles: POS, assessed if known, relative."""
     keys = {"pos_px": words.orientation("pos")}
-    if orientation in PARALLAX_OF:
-        keys[PARALLAX_OF[orientation]] = words.orientation(orientation)
+    assessed = PARALLAX_KEYS[orientation]
+    if fmt.present(m.get(assessed) for m in rows(results, "models")):
+        keys[assessed] = words.orientation(orientation)
     keys[RELATIVE] = words.text("orientation.relative")
     return list(keys.items())
 

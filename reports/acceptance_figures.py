@@ -136,7 +136,8 @@ def parallax(words: Words, results: Results, orientation: str) -> style.Drawing 
     """Mean vertical parallax per strip: POS, assessed orientation, relative orientation."""
     kept = strips_with_models(results)
     groups = [
-        _bars(results, kept, key, title) for key, title in parallax_series(words, orientation)
+        _bars(results, kept, key, title)
+        for key, title in parallax_series(words, results, orientation)
     ]
     if not groups[-1].of_strip:
         return None

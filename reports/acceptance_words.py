@@ -88,7 +88,7 @@ def reason(words: Words, row: Row) -> str:
         The requirement, with ``reason_code`` and ``reason_values``.
     """
     code = row["reason_code"]
-    if code in {"within", "exceeds"} and row["quantity"] in units.AT_LEAST:
+    if code in {"within", "exceeds", "investigate"} and row["quantity"] in units.AT_LEAST:
         code = f"{code} at least"
     found, limit = units.pair(row, words.unit)
     values = {"found": found, "limit": limit}

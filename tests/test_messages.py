@@ -138,8 +138,8 @@ def test_no_wording_stands_in_the_code():
     """Texts of several words in the modules of the document are docstrings or errors."""
     allowed = re.compile(r"error|Error|not |no |the |these |posstats|svg|script|<", re.IGNORECASE)
     for path in chain(ROOT.glob("reports/acceptance_*.py")):
-        if path.name in {"acceptance_templates.py", "acceptance_report.py"}:
-            continue  # their sentences are errors
+        if path.stem.removeprefix("acceptance_") in {"templates", "report", "writing", "cli"}:
+            continue  # their sentences are errors, and help on a terminal
         tree = ast.parse(path.read_text(encoding="utf-8"))
         docs = {ast.get_docstring(n, clean=False) for n in ast.walk(tree)
                 if isinstance(n, ast.Module | ast.ClassDef | ast.FunctionDef)}  # fmt: skip

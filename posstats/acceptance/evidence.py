@@ -22,12 +22,13 @@ ORIENTATIONS = ("bundle", "adjusted", "selected", "pos")
 """What can be assessed; without a choice the first that the results hold. The order is that of
 what entered the orientation, never that of the outcome at the check points."""
 
-_PARALLAX = {
+PARALLAX_KEYS = {
     "pos": "pos_px",
     "selected": "corrected_px",
     "adjusted": "adjusted_px",
     "bundle": "bundle_px",
 }
+"""Keys of the models' parallax from each orientation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +127,7 @@ def evidence(results: Results, orientation: str, product: Product) -> Evidence:
         survey_v_m=survey_v,
         n_given=len(rows),
         quadrant_share=_quadrant_share(results["images"], good),
-        parallax_px=_parallax(results["models"], _PARALLAX[orientation]),
+        parallax_px=_parallax(results["models"], PARALLAX_KEYS[orientation]),
         image_rms_px=_number(bundle.get("image_rms_px")),
         sigma0=_number(bundle.get("sigma0")),
         drift_p=_remaining_drift(results, orientation),

@@ -27,7 +27,7 @@ COMPONENTS: Mapping[str, tuple[int, ...]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity as it was found, with its 95 % interval where one is known; NaN without."""
+    """A quantity as it was found, with its 95 % interval where one is known; NaN where not."""
 
     value: float
     low: float = float("nan")
@@ -152,9 +152,10 @@ def _largest_over_rmse(component: str) -> Callable[[Question], Found]:
 
 def _n_blunders(component: str) -> Callable[[Question], Found]:
     def find(question: Question) -> Found:
+        lengths = question.lengths(component)
         if question.threshold is None:
-            raise Unavailable(Reason("quantity not available"))
-        return Found(float(np.sum(question.lengths(component) > question.threshold)))
+            return Found(float("nan"))
+        return Found(float(np.sum(lengths > question.threshold)))
 
     return find
 
@@ -171,15 +172,13 @@ def _measured_share(question: Question) -> Found:
 
 def _quadrant_share(question: Question) -> Found:
     question.differences("h")
-    return Found(_available(question.evidence.quadrant_share))
+    return Found(question.evidence.quadrant_share)
 
 
 def _parallax(statistic: Callable[[_Floats], float]) -> Callable[[Question], Found]:
     def find(question: Question) -> Found:
         parallax = question.evidence.parallax_px
-        if len(parallax) == 0:
-            raise Unavailable(Reason("quantity not available"))
-        return Found(statistic(parallax))
+        return Found(statistic(parallax) if len(parallax) else float("nan"))
 
     return find
 
@@ -196,12 +195,6 @@ def _sample_size(question: Question) -> Found:
     if question.product.sample_size is None:
         raise Unavailable(Reason("product value missing", {"name": "sample_size"}))
     return Found(float(question.product.sample_size))
-
-
-def _available(value: float) -> float:
-    if np.isnan(value):
-        raise Unavailable(Reason("quantity not available"))
-    return value
 
 
 FINDERS: Mapping[str, Callable[[Question], Found]] = MappingProxyType(
@@ -221,9 +214,9 @@ FINDERS: Mapping[str, Callable[[Question], Found]] = MappingProxyType(
         "quadrant_share": _quadrant_share,
         "parallax_rms_px": _parallax(_root_mean_square),
         "parallax_largest_px": _parallax(_largest_value),
-        "image_rms_px": lambda question: Found(_available(question.evidence.image_rms_px)),
-        "sigma0": lambda question: Found(_available(question.evidence.sigma0)),
-        "remaining_drift_p": lambda question: Found(_available(question.evidence.drift_p)),
+        "image_rms_px": lambda question: Found(question.evidence.image_rms_px),
+        "sigma0": lambda question: Found(question.evidence.sigma0),
+        "remaining_drift_p": lambda question: Found(question.evidence.drift_p),
         "sample_size": _sample_size,
     }
 )
@@ -238,4 +231,8 @@ def find(name: str, question: Question) -> Found:
     Unavailable
         With the reason, where the evidence does not say.
     """
-    return FINDERS[name](question)
+    found = FINDERS[name](question)
+    if np.isnan(found.value):
+        values = {"quantity": name, "orientation": question.evidence.orientation}
+        raise Unavailable(Reason("quantity not available", values))
+    return found

@@ -13,7 +13,8 @@ class Reason:
     """A reason by its code.
 
     `within`, `exceeds`, `investigate` (found, limit); `no check points`; `survey accuracy not
-    stated`; `product value missing` (name); `quantity not available`; `nssda ratio` (ratio).
+    stated`; `product value missing` (name); `quantity not available` (quantity, orientation); `nssda ratio`
+    (ratio).
     """
 
     code: str
