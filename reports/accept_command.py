@@ -28,6 +28,8 @@ EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*(mm|cm|m)\s*")
 _METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LARGEST_RESULTS = 500_000_000
+_LISTS = ("check_points", "check_point_residuals", "images", "models", "regression", "selection",
+          "warnings")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,16 @@ def _read_results(path: Path) -> tuple[dict[str, Any], bytes]:
         raise PosstatsError(
             f"{path} is no results.json of posstats analyse: its schema is not {SCHEMA}"
         )
+    strange = [name for name in _LISTS if not _is_list_of_rows(name, values.get(name))]
+    strange += [name for name in ("block", "settings") if not isinstance(values.get(name), dict)]
+    if strange:
+        raise PosstatsError(f"{path} lacks {', '.join(strange)} as posstats analyse writes them")
     return values, text
+
+
+def _is_list_of_rows(name: str, value: object) -> bool:
+    kind = str if name == "warnings" else dict
+    return isinstance(value, list) and all(isinstance(row, kind) for row in value)
 
 
 def _summary(acceptance: dict[str, Any]) -> Iterator[str]:

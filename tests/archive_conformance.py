@@ -81,7 +81,8 @@ def _metadata(pdf, data) -> Iterator[str]:
         ("/CreationDate", _pdf_date(root.findtext(".//xmp:CreateDate", None, NS))),
         ("/ModDate", _pdf_date(root.findtext(".//xmp:ModifyDate", None, NS))),
     )
-    yield from (f"{key} is not that of XMP" for key, value in pairs if str(info.get(key)) != value)
+    stated = {key: str(value) for key, value in info.items()}
+    yield from (f"{key} is not that of XMP" for key, value in pairs if stated.get(key) != value)
 
 
 def _pdf_date(text: str) -> str:

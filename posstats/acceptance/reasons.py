@@ -13,8 +13,8 @@ class Reason:
     """A reason by its code.
 
     `within`, `exceeds`, `investigate` (found, limit); `no check points`; `survey accuracy not
-    stated`; `product value missing` (name); `quantity not available` (quantity, orientation); `nssda ratio`
-    (ratio).
+    stated`; `product value missing` (name); `quantity not available` (quantity, orientation);
+    `nssda ratio` (ratio). Of an orientation: its name, or `asked`.
     """
 
     code: str

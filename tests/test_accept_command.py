@@ -1,0 +1,256 @@
+"""`posstats accept` from a block to a document that `posstats verify` accepts; and bad input."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pikepdf
+import pytest
+from archive_conformance import problems
+from click.testing import CliRunner
+from small_scenario import small_block
+
+from posstats.block_io import write_block
+from posstats.reports.accept_command import length_m
+from posstats.reports.cjk import faces
+from posstats.reports.cli import cli
+
+CONTRACT = """
+extends = "asprs-2024"
+
+[contract]
+number = "2026-117"
+client = "City of <b>Exampleton</b>"
+contractor = "Example Survey Ltd"
+
+[product]
+class_h_m = 0.9
+class_v_m = 1.5
+
+[[requirement]]
+id = "parallax_rms_px"
+quantity = "parallax_rms_px"
+limit = 1
+source = "annex B"
+"""
+
+
+def run(*arguments):
+    return CliRunner().invoke(cli, [str(each) for each in arguments], catch_exceptions=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    target = tmp_path_factory.mktemp("accept") / "flight"
+    checks = {"n": 32, "distribution": "grid", "image_px": 0.3, "ground_m": 0.1}
+    block = small_block(check_points=checks)
+    write_block(block, target)
+    (target / "adjusted.csv").unlink()  # a simulated block brings the truth
+    (target.parent / "contract.toml").write_text(CONTRACT, encoding="utf-8")
+    return target
+
+
+@pytest.fixture(scope="module")
+def analysed(folder) -> Path:
+    out = folder.parent / "report"
+    assert run("analyse", folder, "--out", out, "--errors", "bundle", "--no-pdf").exit_code == 0
+    return out / "results.json"
+
+
+@pytest.fixture(scope="module")
+def accepted(folder, analysed) -> Path:
+    out = folder.parent / "accepted"
+    done = run("accept", analysed, "--contract", folder.parent / "contract.toml", "--out", out)
+    assert done.exit_code == 0, done.output
+    assert done.output.startswith("ACCEPTED: small (simulated)")
+    return out
+
+
+def values_in(out: Path) -> dict:
+    return json.loads((out / "acceptance.json").read_text(encoding="utf-8"))
+
+
+def test_the_data_say_what_was_found_and_in_which_words(accepted):
+    values = values_in(accepted)
+    assert values["schema"] == "posstats-acceptance/1"
+    assert values["verdict"] == "accepted"
+    assert values["orientation"] == "bundle"
+    assert values["statement"].count("was tested to meet ASPRS") == 2
+    assert "a 90 (cm) RMSE_H" in values["statement"]
+    rows = {row["id"]: row for row in values["requirements"]}
+    assert {"clause", "quantity", "found", "limit", "unit", "verdict", "reason"} <= set(
+        rows["product_rmse_h"]
+    )
+    assert rows["product_rmse_h"]["clause"] == "7.11"
+    assert rows["parallax_rms_px"]["found"] < 1.0
+    assert "is within the limit of 0.900\u00a0m" in rows["product_rmse_h"]["reason"]
+    measures = {row["name"]: row["iso_19157"] for row in values["accuracy"]["percentiles"]}
+    assert measures == {"CE90": 44, "CE95": 45, "LE90": 35, "LE95": 36}
+    assert len(values["check_points"]) == values["accuracy"]["n_given"] == 32
+
+
+def test_the_document_is_one_for_the_archive_with_its_data_inside(accepted):
+    data = (accepted / "acceptance.pdf").read_bytes()
+    assert problems(data) == []
+    with pikepdf.open(accepted / "acceptance.pdf") as pdf:
+        names = set(pdf.attachments)
+        outline = pdf.Root.Outlines.Count
+    expected = {"results.json", "acceptance.json", "profile/contract.toml"}
+    assert expected | {"profile/asprs-2024.toml", "tables/check_points.csv"} <= names
+    assert outline >= 10
+
+
+def test_texts_of_the_contract_are_text_on_the_page(accepted):
+    page = (accepted / "acceptance.html").read_text(encoding="utf-8")
+    assert "City of &lt;b&gt;Exampleton&lt;/b&gt;" in page
+    assert "<b>Exampleton" not in page
+
+
+def test_a_block_is_judged_and_its_document_verified_down_to_its_inputs(folder, tmp_path):
+    done = run("accept", folder, "--profile", "asprs-2024", "--class-h", "90cm", "--class-v",
+               "150 cm", "--out", tmp_path)  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert values_in(tmp_path)["orientation"] == "selected"
+    verified = run("verify", tmp_path / "acceptance.pdf", "--inputs", folder)
+    assert verified.exit_code == 0, verified.output
+    assert verified.output.count("PASS") == 7
+    other = tmp_path / "other"
+    shutil.copytree(folder, other)
+    points = (other / "ground_points.csv").read_text(encoding="utf-8")
+    (other / "ground_points.csv").write_text(
+        points.replace("check,0.1", "check,0.2"), encoding="utf-8"
+    )
+    swapped = run("verify", tmp_path / "acceptance.pdf", "--inputs", other)
+    assert swapped.exit_code == 1
+    assert "ground_points.csv is another file than the one used" in swapped.output
+
+
+def test_a_verdict_that_was_changed_in_the_data_is_found(accepted, tmp_path):
+    values = values_in(accepted)
+    changed = tmp_path / "changed.pdf"
+    with pikepdf.open(accepted / "acceptance.pdf") as pdf:
+        values["requirements"][0]["found"] *= 0.5
+        text = json.dumps(values, indent=1, ensure_ascii=False) + "\n"
+        pdf.attachments["acceptance.json"].get_file().obj.write(text.encode("utf-8"))
+        pdf.save(changed)
+    verified = run("verify", changed)
+    assert verified.exit_code == 1
+
+
+def test_the_same_inputs_make_the_same_bytes(folder, analysed, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1780000000")
+    for name in ("one", "two"):
+        run("accept", analysed, "--contract", folder.parent / "contract.toml", "--out",
+            tmp_path / name)  # fmt: skip
+    for name in ("acceptance.html", "acceptance.pdf", "acceptance.json"):
+        one, two = (tmp_path / each / name for each in ("one", "two"))
+        assert one.read_bytes() == two.read_bytes()
+    assert values_in(tmp_path / "one")["created"].startswith("2026-05-28")
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "verdict"),
+    [
+        (["--profile", "asprs-2024", "--class", "1.5m"], 0, "accepted"),
+        (["--profile", "asprs-2024", "--class", "10cm"], 3, "rejected"),
+        (["--profile", "jrc", "--gsd", "90cm", "--orientation", "selected"], 4, "not assessable"),
+        (["--profile", "jrc", "--gsd", "90cm", "--orientation", "bundle"], 0, "accepted"),
+        (["--profile", "nssda", "--class", "2m"], 0, "accepted"),
+        (["--profile", "gbt-24356", "--class", "2m"], 0, "accepted"),
+        (["--profile", "orthophoto-scale", "--scale", "5000", "--terrain", "flat"], 0, "accepted"),
+        (["--profile", "asprs-2024", "--class", "1.5m", "--orientation", "pos"], 3, "rejected"),
+    ],
+)
+def test_the_exit_code_is_the_verdict(analysed, tmp_path, options, code, verdict):
+    done = run("accept", analysed, *options, "--out", tmp_path, "--no-pdf")
+    assert done.exit_code == code, done.output
+    assert values_in(tmp_path)["verdict"] == verdict
+    assert done.output.startswith(verdict.upper())
+
+
+@pytest.mark.skipif(not faces("检"), reason="no typeface for Chinese is installed")
+def test_a_chinese_document_verifies_too(folder, analysed, tmp_path):
+    done = run("accept", analysed, "--contract", folder.parent / "contract.toml", "--language",
+               "zh", "--out", tmp_path)  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert "验收" in (tmp_path / "acceptance.html").read_text(encoding="utf-8")
+    assert problems((tmp_path / "acceptance.pdf").read_bytes()) == []
+    assert run("verify", tmp_path / "acceptance.pdf").exit_code == 0
+
+
+def test_templates_of_a_company_are_embedded_and_used_again(folder, analysed, tmp_path):
+    templates = tmp_path / "templates"
+    templates.mkdir()
+    logo = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20">'
+        '<title>Example Survey Ltd</title><rect width="40" height="20"/></svg>'
+    )
+    (templates / "logo.svg").write_text(logo, encoding="utf-8")
+    done = run("accept", analysed, "--contract", folder.parent / "contract.toml", "--templates",
+               templates, "--out", tmp_path / "out")  # fmt: skip
+    assert done.exit_code == 0, done.output
+    document = tmp_path / "out" / "acceptance.pdf"
+    with pikepdf.open(document) as pdf:
+        assert "templates/logo.svg" in pdf.attachments
+    assert run("verify", document).exit_code == 0
+
+
+def test_a_length_needs_its_unit():
+    assert length_m("10cm") == 0.1
+    assert length_m(" 100 mm ") == 0.1
+    assert length_m("0.1m") == 0.1
+    for wrong in ("10", "cm", "10 km", "-1cm", "0cm", "1e3m", "nan m"):
+        with pytest.raises(ValueError, match="is no length: write 10cm"):
+            length_m(wrong)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ([], "give a profile (--profile, see posstats profiles) or a contract file"),
+        (["--profile", "asprs-2023", "--class", "10cm"], "asprs-2024?"),
+        (["--profile", "asprs-2024"], "profile asprs-2024 needs class_h or class_v"),
+        (["--profile", "asprs-2024", "--class", "10"], "'10' is no length"),
+        (["--profile", "asprs-2024", "--class", "1m", "--class-h", "1m"], "either --class"),
+        (["--profile", "jrc", "--gsd", "1m", "--orientation", "adjusted"],
+         "the results hold no orientation adjusted: choose one of bundle, selected, pos"),
+        (["--profile", "orthophoto-scale", "--scale", "1000", "--terrain", "flat"],
+         "expected one of 2000, 5000, 10000"),
+        (["--profile", "jrc", "--gsd", "1m", "--templates", "/nowhere"], "is no folder"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_judged_is_said(analysed, tmp_path, options, message):
+    done = run("accept", analysed, *options, "--out", tmp_path / "out")
+    assert done.exit_code in (1, 2)
+    assert message in done.output
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"\x00\xff", "is no results.json"),
+        (b"{", "is no results.json"),
+        (b"[]", "its schema is not posstats-results/1"),
+        (b'{"schema": "posstats-adjustment/1"}', "its schema is not posstats-results/1"),
+        (
+            b'{"schema": "posstats-results/1"}',
+            "results.json lacks check_points, check_point_residuals, images",
+        ),
+        (b"[" * 100_000, "is no results.json"),
+    ],
+)
+def test_a_file_that_holds_no_results_is_named(tmp_path, content, message):
+    path = tmp_path / "results.json"
+    path.write_bytes(content)
+    done = run(
+        "accept", path, "--profile", "asprs-2024", "--class", "10cm", "--out", tmp_path / "o"
+    )
+    assert done.exit_code == 1
+    assert message in done.output
+
+
+def test_a_place_that_does_not_exist_is_named(tmp_path):
+    done = run("accept", tmp_path / "none", "--profile", "jrc", "--gsd", "1m")
+    assert done.exit_code == 1
+    assert "none" in done.output
