@@ -46,7 +46,8 @@ def groups(results: Results) -> Table:
         "The variance factor is the weighted sum of squares over the redundancy: 1 where the "
         "weights are right, above 1 where the observations are worse than stated.",
         "Detectable: the median of the smallest blunders that a test of size 0.1 % finds with a "
-        "probability of 80 %.",
+        "probability of 80 %. Data snooping tests all observations together at 5 %, each "
+        "at less: what it surely finds is somewhat larger.",
     )
     return Table("groups", "Groups of observations of the adjustment.", tuple(columns), notes)
 
@@ -207,10 +208,8 @@ def blunders(results: Results) -> Table:
         text_column("Unit", [unit.name for unit in units]),
         text_column("Found by", [_how(row) for row in kept]),
     )
-    notes = []
-    if len(found) > SHOWN_BLUNDERS:
-        notes.append(f"{fmt.count(len(found) - SHOWN_BLUNDERS)} more are in adjustment.json.")
-    return Table("blunders", "Observations that the others contradict.", columns, tuple(notes))
+    notes = _not_shown(found, SHOWN_BLUNDERS)
+    return Table("blunders", "Observations that the others contradict.", columns, notes)
 
 
 def _how(row: Row) -> str:
@@ -239,18 +238,27 @@ def orientations(results: Results) -> Table:
 
 def control_points(results: Results) -> Table:
     """Residuals of the control points."""
-    kept = rows(results, "control_points")[:SHOWN_POINTS]
+    found = rows(results, "control_points")
+    kept = found[:SHOWN_POINTS]
     columns = [text_column("Point", [row["point"] for row in kept])]
     for axis, title in (("x", "east"), ("y", "north"), ("z", "up")):
         values = [row[f"d{axis}_m"] for row in kept]
         columns.append(aligned_column(title, "m", values, group="adjusted minus given"))
     columns.append(aligned_column("Largest w", "", [row["largest_w"] for row in kept]))
-    return Table("control_points", "Control points after the adjustment.", tuple(columns))
+    caption = "Control points after the adjustment."
+    return Table("control_points", caption, tuple(columns), _not_shown(found, SHOWN_POINTS))
+
+
+def _not_shown(found: Sequence[Row], shown: int) -> tuple[str, ...]:
+    """A note on rows that the table leaves out."""
+    more = len(found) - shown
+    return (f"{fmt.count(more)} more are in adjustment.json.",) if more > 0 else ()
 
 
 def check_point_list(results: Results) -> Table:
     """Every check point with its standard deviations."""
-    kept = rows(results, "check_point_residuals", orientation="bundle")[:SHOWN_POINTS]
+    found = rows(results, "check_point_residuals", orientation="bundle")
+    kept = found[:SHOWN_POINTS]
     columns = [
         text_column("Point", [row["point"] for row in kept]),
         count_column("Rays", [row["n_rays"] for row in kept]),
@@ -264,4 +272,4 @@ def check_point_list(results: Results) -> Table:
         "Check points, intersected from the adjusted orientations; standard deviations hold those "
         "of the orientations, the image coordinates and the survey."
     )
-    return Table("check_point_list", caption, tuple(columns))
+    return Table("check_point_list", caption, tuple(columns), _not_shown(found, SHOWN_POINTS))

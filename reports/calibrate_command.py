@@ -1,17 +1,21 @@
 """`posstats calibrate`: from the block folder of a calibration flight to a calibration file."""
 
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
+from posstats.adjustment.results import adjustment_results
 from posstats.block_io import read_block
 from posstats.calibration import Calibration, calibrate, write_calibration
 from posstats.errors import PosstatsError
 
+from . import adjustment_verdict
 from . import format as fmt
 from .progress import progress_bar
+from .summary import WIDTH
 
 
 def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> Iterator[str]:
@@ -30,6 +34,12 @@ def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> I
     write_calibration(calibration, out)
     yield f"camera {calibration.camera}, from {calibration.n_images} images of {calibration.block}"
     yield from _described(calibration)
+    results = adjustment_results(adjustment)
+    yield ""
+    yield from textwrap.wrap(adjustment_verdict.paragraph(results), WIDTH)
+    for warning in results["warnings"]:
+        yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
+    yield ""
     yield f"calibration: {out}"
 
 

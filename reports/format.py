@@ -91,7 +91,7 @@ def shared_decimals(values: Iterable[float | None], digits: int = 3) -> int:
 
 def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
     """A number and its unit, never parted at the end of a line."""
-    space = "" if unit == "°" else "\u00a0"
+    space = "" if unit.startswith("°") else "\u00a0"
     return MISSING if is_missing(value) else f"{number(value, digits)}{space}{unit}"
 
 

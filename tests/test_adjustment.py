@@ -282,6 +282,44 @@ def test_an_image_with_swapped_axes_is_named_and_spoils_no_check_point(block):
     assert np.nanmax(np.abs(found.check_points.difference_m)) < 5.0
 
 
+def test_an_image_mirrored_along_the_flight_shows_against_the_next_strip(block):
+    ties = block.tie_points
+    image = 12
+    xy = ties.xy_px.copy()
+    rays = ties.image == image
+    along = np.argmax(np.abs(_flight_in_image(block, image)))
+    xy[rays, along] *= -1.0
+    mirrored = replace(block, tie_points=replace(ties, xy_px=xy))
+    found = adjust_block(mirrored, AdjustmentSettings(control="corners", drift="strip"))
+    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
+    assert [row["image"] for row in named] == [block.orientations.image[image]]
+
+
+def _flight_in_image(block, image):
+    pos = block.orientations
+    ahead = pos.position_m[image + 1] - pos.position_m[image]
+    return (pos.ground_from_image[image].T @ ahead)[:2]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda b: replace(b, tie_points=replace(b.tie_points, xy_px=b.tie_points.xy_px * [-1, 1])),
+         "x of the image coordinates has the wrong sign"),
+        (lambda b: scaled_angles(b, 0.9), "the angles are in degrees, not in gon"),
+        (lambda b: scaled_angles(b, 1.0 / 0.9), "the angles are in gon, not in degrees"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_all_images_is_named(block, change, message):
+    with pytest.raises(PosstatsError, match=message):
+        adjust_block(change(block), AdjustmentSettings(control="corners"))
+
+
+def scaled_angles(block, factor):
+    pos = block.orientations
+    return replace(block, orientations=pos.with_angles(factor * pos.angles_rad))
+
+
 def test_a_control_point_without_any_error_is_refused(block):
     surveyed = block.ground_points
     exact = replace(surveyed, sigma_xy_m=np.zeros(len(surveyed)))

@@ -24,8 +24,10 @@ def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
     """Images that one of the seven other choices of axes fits ten times better.
 
     The parallax is the median over the pairs of an image's rays with the other rays of their
-    points; an image needs six pairs. A reversed x alone is not seen along a strip, where it makes
-    no parallax; nor are axes that are wrong in all images.
+    points; an image needs six pairs. An axis reversed along the base makes no parallax, so pairs
+    with bases along x and along y of the image are judged apart, and the worse of them counts. Not
+    seen are axes that are wrong in all images, and one reversed along the line of flight where no
+    other strip overlaps.
     """
     first, second = _pairs(problem.point)
     first, second = np.append(first, second), np.append(second, first)
@@ -33,13 +35,34 @@ def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
     order = np.argsort(image, kind="stable")
     first, second, image = first[order], second[order], image[order]
     numbers, starts = np.unique(image, return_index=True)
-    parallax = [_parallax(problem, first, second, axes) for axes in _VARIANTS]
+    parallax = np.array([_parallax(problem, first, second, axes) for axes in _VARIANTS])
+    along_x = _base_along_x(problem, first, second)
     wrong = []
     for number, rows in zip(numbers, np.split(np.arange(len(image)), starts[1:]), strict=True):
-        median = [float(np.median(each[rows])) for each in parallax]
+        median = _worse_median(parallax[:, rows], along_x[rows])
         if len(rows) >= _LEAST_PAIRS and min(median) < _BETTER * median[0]:
             wrong.append(number)
     return np.array(wrong, dtype=np.intp)
+
+
+def _worse_median(parallax: _Floats, along_x: NDArray[np.bool_]) -> _Floats:
+    """(8,) of the variants' parallax (8, q): the larger of the medians of two kinds of pairs.
+
+    Of all pairs where one kind is too rare: a single wrong neighbour could be all of the other.
+    """
+    kinds = [rows for rows in (along_x, ~along_x) if rows.sum() >= _LEAST_PAIRS]
+    medians = [np.median(parallax[:, rows], axis=1) for rows in kinds]
+    worse: _Floats = np.max(medians, axis=0) if len(kinds) == 2 else np.median(parallax, axis=1)
+    return worse
+
+
+def _base_along_x(problem: BundleProblem, first: _Ints, second: _Ints) -> NDArray[np.bool_]:
+    """(q,) whether the base lies rather along x than along y of the first ray's image."""
+    one, other = problem.image[first], problem.image[second]
+    base = problem.position_m[other] - problem.position_m[one]
+    in_image = np.einsum("qji,qj->qi", problem.ground_from_image[one], base)
+    along: NDArray[np.bool_] = np.abs(in_image[:, 0]) > np.abs(in_image[:, 1])
+    return along
 
 
 def _pairs(point: _Ints) -> tuple[_Ints, _Ints]:

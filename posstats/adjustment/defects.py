@@ -35,13 +35,22 @@ class Defect:
     ----------
     parameters, images
         Indices of additional parameters; of images, where these alone are open.
-    sentence
-        Which, why, and what would help.
+    subject
+        Which, as the beginning of a sentence.
+    reason, remedy
+        Why, and what would help: half sentences.
     """
 
     parameters: tuple[int, ...]
     images: tuple[int, ...]
-    sentence: str
+    subject: str
+    reason: str
+    remedy: str
+
+    @property
+    def sentence(self) -> str:
+        """Which, why, and what would help."""
+        return f"{self.subject}: {self.reason}. What helps: {self.remedy}."
 
 
 @dataclass(frozen=True)
@@ -117,8 +126,7 @@ def _of_parameters(
         if concerned:
             names = _listed([_called(left[at]) for at in concerned])
             verb = "is" if len(concerned) == 1 else "are"
-            sentence = f"{names} {verb} {verdict}: {reason}. What helps: {remedy}."
-            found.append(Defect(concerned, (), sentence))
+            found.append(Defect(concerned, (), f"{names} {verb} {verdict}", reason, remedy))
             left = {at: each for at, each in left.items() if at not in concerned}
     return tuple(found)
 
@@ -315,7 +323,7 @@ def _of_images(problem: BundleProblem, image_id: Sequence[str], images: tuple[in
         reason, remedy = _single_images(problem, images)
         verb = "orientation of {} is" if len(images) == 1 else "orientations of {} are"
         subject = f"The {verb}".format(_listed([image_id[i] for i in images]))
-    return Defect((), images, f"{subject} not determined: {reason}. What helps: {remedy}.")
+    return Defect((), images, f"{subject} not determined", reason, remedy)
 
 
 def _single_images(problem: BundleProblem, images: tuple[int, ...]) -> tuple[str, str]:

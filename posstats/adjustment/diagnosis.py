@@ -64,6 +64,12 @@ def _undone(block: Block) -> Iterator[tuple[str, Block]]:
     other = "phi-omega-kappa" if pos.system == "omega-phi-kappa" else "omega-phi-kappa"
     changes: dict[str, Callable[[Orientations], Orientations]] = {
         f"the angles are {other}, not {pos.system} (block.angles)": _other_system,
+        "the angles are in gon, not in degrees (block.angle_unit)": lambda o: o.with_angles(
+            0.9 * o.angles_rad
+        ),
+        "the angles are in degrees, not in gon (block.angle_unit)": lambda o: o.with_angles(
+            o.angles_rad / 0.9
+        ),
         "omega and phi are exchanged": lambda o: o.with_angles(o.angles_rad[:, [1, 0, 2]]),
         "x and y of the POS positions are exchanged": lambda o: replace(
             o, position_m=_exchanged(o.position_m)
@@ -74,6 +80,7 @@ def _undone(block: Block) -> Iterator[tuple[str, Block]]:
     ties = block.tie_points
     for words, xy in (
         ("x and y of the image coordinates are exchanged", ties.xy_px[:, ::-1] * [-1.0, -1.0]),
+        ("x of the image coordinates has the wrong sign", ties.xy_px * [-1.0, 1.0]),
         ("y of the image coordinates has the wrong sign", ties.xy_px * [1.0, -1.0]),
     ):
         yield words, replace(block, tie_points=replace(ties, xy_px=np.ascontiguousarray(xy)))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from posstats.adjustment.defects import defects
+from posstats.adjustment.defects import defects, weak_parameters
 from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
 from posstats.bundle.parameters import (
     BORESIGHT,
@@ -87,17 +87,6 @@ _FAMILIES: tuple[tuple[tuple[str, ...], str, str], ...] = (
         "a lever arm shifts all antenna positions like a shift of the GNSS",
         "strips flown in opposite or crossing directions, and control points",
     ),
-    (
-        ("camera_c",),
-        "over flat ground the principal distance acts like the flying height",
-        "control points of different heights, or two flying heights",
-    ),
-    (
-        ("camera_x0", "camera_y0"),
-        "on strips flown in one direction the principal point acts like a boresight angle, or a"
-        " shift of the positions",
-        "strips flown in opposite or crossing directions, and control points",
-    ),
 )
 _CAMERA = (
     "the tie points do not show this deformation of the image apart from the other parameters",
@@ -126,20 +115,35 @@ def undetermined(
     the block without a common point.
     """
     return (
-        *_open_parameters(tests),
+        *_known_from_priors(problem, tests),
+        *_weak_parameters(problem, tests),
         *_open_images(result, image_id),
         *unconnected(problem, image_id, ~result.rejected),
     )
 
 
-def _open_parameters(tests: Sequence[ParameterTest]) -> Iterator[Undetermined]:
+def _known_from_priors(
+    problem: BundleProblem, tests: Sequence[ParameterTest]
+) -> Iterator[Undetermined]:
     """Parameters of one kind, one scope after the other, together."""
     groups: dict[tuple[str, str, str], list[str]] = {}
-    for test in tests:
-        if not test.determined:
+    for parameter, test in zip(problem.parameters, tests, strict=True):
+        if parameter.sigma is not None and not test.determined:
             groups.setdefault((*explanation(test.name), test.scope), []).append(test.name)
     for (reason, remedy, scope), names in groups.items():
         yield Undetermined("parameter", tuple(names), scope, reason, remedy)
+
+
+def _weak_parameters(
+    problem: BundleProblem, tests: Sequence[ParameterTest]
+) -> Iterator[Undetermined]:
+    """Free parameters that move no observation noticeably, those of one scope together."""
+    for defect in weak_parameters(problem, tests):
+        scopes: dict[str, list[str]] = {}
+        for at in defect.parameters:
+            scopes.setdefault(tests[at].scope, []).append(tests[at].name)
+        for scope, names in scopes.items():
+            yield Undetermined("parameter", tuple(names), scope, defect.reason, defect.remedy)
 
 
 def _open_images(result: AdjustedBundle, image_id: _Ids) -> Iterator[Undetermined]:

@@ -62,7 +62,8 @@ class ParameterTest:
     name, scope, unit
         Of the parameter.
     value, sigma
-        Estimate and its standard deviation, scaled by the estimated sigma0.
+        Estimate and its standard deviation, scaled by the estimated sigma0; not that of a
+        parameter known from its prior, which says nothing of the measurements' noise.
     t, p
         Value over sigma, two-sided. Conservative for a prior that is no measurement but an
         assumption of 0: this draws the value to 0, which the sigma does not contain.
@@ -143,10 +144,16 @@ def global_test(result: AdjustedBundle) -> GlobalTest:
 def parameter_tests(problem: BundleProblem, result: AdjustedBundle) -> tuple[ParameterTest, ...]:
     """Student's test of every additional parameter, with the adjustment's degrees of freedom."""
     stated = np.sqrt(np.diagonal(result.common_covariance))
-    sigma = result.sigma0 * stated
+    effect = stated * largest_effects(problem)
+    determined = [
+        _determined(parameter, float(stated[at]), float(effect[at]))
+        for at, parameter in enumerate(problem.parameters)
+    ]
+    prior_alone = [p.sigma is not None and not d
+                   for p, d in zip(problem.parameters, determined, strict=True)]  # fmt: skip
+    sigma = np.where(prior_alone, 1.0, result.sigma0) * stated
     t = result.common / sigma
     p = 2.0 * stats.t.sf(np.abs(t), result.dof) if result.dof > 0 else np.full(len(t), np.nan)
-    effect = stated * largest_effects(problem)
     return tuple(
         ParameterTest(
             parameter.name,
@@ -156,7 +163,7 @@ def parameter_tests(problem: BundleProblem, result: AdjustedBundle) -> tuple[Par
             float(t[at]),
             float(p[at]),
             bool(p[at] < SIGNIFICANCE),
-            _determined(parameter, float(stated[at]), float(effect[at])),
+            determined[at],
             UNITS[parameter.name],
         )
         for at, parameter in enumerate(problem.parameters)
