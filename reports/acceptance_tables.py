@@ -115,13 +115,7 @@ def significance(words: Words, acceptance: Acceptance) -> Table:
         text_column(words.text("column.statistic"), statistic),
         p_column(words.text("column.p"), p),
     )
-    return Table(
-        "tests",
-        words.text("table.tests"),
-        columns,
-        (words.text("note.tests"),),
-        together=(len(rows),),
-    )
+    return Table("tests", words.text("table.tests"), columns, (words.text("note.tests"),))
 
 
 def product_and_contract(words: Words, acceptance: Acceptance) -> Table:

@@ -18,6 +18,7 @@ from .embolden import embolden
 
 FAMILY = "posstats CJK"
 DEBIAN_PACKAGES = "fonts-noto-cjk or fonts-wqy-microhei"
+PREFERRED = "Noto Sans CJK SC,Source Han Sans SC"  # else the Japanese shapes of a family may come
 REPLACEMENT = "\ufffd"
 SPACES = " \u00a0\u3000"  # else another font would be taken for those between Chinese words
 
@@ -140,7 +141,7 @@ def _matched(weight: str) -> FontFile | None:
     command = shutil.which("fc-match")
     if command is None:
         return None
-    pattern = f"sans-serif:lang=zh-cn:weight={_WEIGHTS[weight]}"
+    pattern = f"{PREFERRED},sans-serif:lang=zh-cn:weight={_WEIGHTS[weight]}"
     run = subprocess.run(  # noqa: S603 - a pattern of ours
         [command, "-f", "%{file}\n%{index}\n", pattern],
         capture_output=True, text=True, check=False,

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from report_results import area_results
 
+FULL = 64  # points from which there are a blunder and a point that cannot be intersected
 HOSTILE = "<script>alert(1)</script>"
 FORMULA = "{{7*7}}"
 LONG_ID = "P" + "1234567890" * 20
@@ -99,13 +100,13 @@ def cases() -> dict[str, dict[str, Any]]:
     return {
         "accepted": acceptance(),
         "rejected": acceptance(sigma_m=0.12, mean_m=0.06),
-        "not assessable": _without_survey(acceptance()),
-        "borderline": acceptance(sigma_m=0.0705, seed=3),
+        "not assessable": _without_survey(acceptance(FULL)),
+        "borderline": acceptance(FULL, sigma_m=0.062, seed=3),
         "few": acceptance(12),
         "none": acceptance(0),
         "long": _long(acceptance()),
-        "hostile": _hostile(acceptance()),
-        "chinese names": _chinese(acceptance()),
+        "hostile": _hostile(acceptance(FULL)),
+        "chinese names": _chinese(acceptance(FULL)),
     }
 
 
@@ -121,9 +122,9 @@ def _points(n: int, sigma: float, mean: float, seed: int) -> list[dict[str, Any]
     made = []
     for k in range(n):
         d = rng.normal(mean, sigma, 3)
-        blunder = n >= 100 and k == 33
+        blunder = n >= FULL and k == 33
         d = d * 5.0 if blunder else d
-        lost = n >= 100 and k == 60
+        lost = n >= FULL and k == 60
         made.append({
             "point": f"CP{k + 1:03d}",
             "x_m": 400000.0 + float(rng.uniform(0, 28500)),
