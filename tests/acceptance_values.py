@@ -166,16 +166,16 @@ def _accuracy(points: list[dict[str, Any]]) -> dict[str, Any]:
         "covariance_m2": np.cov(d.T).tolist() if n > 1 else None,
         "mean_shift": {"t2": 4.21, "f": 1.389, "df1": 3, "df2": n - 3, "p": 0.247, "reason": None}
         if n > 3 else
-        {"t2": None, "f": None, "df1": None, "df2": None, "p": None, "reason": "no check points"},
+        {"t2": None, "f": None, "df1": None, "df2": None, "p": None, "reason": "no_points"},
         "normality": [
             {"component": c, "w": 0.993 if n > 2 else None, "p": 0.46 if n > 2 else None,
-             "reason": None if n > 2 else "no check points"}
+             "reason": None if n > 2 else "no_points"}
             for c in "xyz"
         ],
         "largest_residual": [
             {"component": c, "point": known[int(np.abs(d[:, k]).argmax())]["point"] if n else None,
              "value_m": float(np.abs(d[:, k]).max()) if n else None, "p": 0.04 if n else None,
-             "reason": None if n else "no check points"}
+             "reason": None if n else "no_points"}
             for k, c in enumerate("xyz")
         ],
     }  # fmt: skip

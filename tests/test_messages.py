@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from posstats.acceptance import samples
+from posstats.acceptance.evidence import ORIENTATIONS
+from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.errors import PosstatsError
 from posstats.reports import acceptance_words
 from posstats.reports.messages import MissingMessageError, catalogue
@@ -15,20 +18,12 @@ from posstats.reports.messages import MissingMessageError, catalogue
 ROOT = Path(__file__).resolve().parents[1]
 ENGLISH, CHINESE = catalogue("en"), catalogue("zh")
 MAY_BE_EMPTY = {"page.after", "sentence.between"}
-CODES = {
-    "within", "exceeds", "investigate", "no check points", "too few points",
-    "survey accuracy not stated", "product value missing", "quantity not available", "nssda ratio",
-    "scale not covered", "terrain missing",
-}  # fmt: skip
-QUANTITIES = {
-    "rmse_x", "rmse_y", "rmse_h", "rmse_v", "rmse_3d", "product_rmse_h", "product_rmse_v",
-    "product_rmse_3d", "accuracy_h_95", "accuracy_v_95", "mean_error_h", "mean_error_v",
-    "largest_mean_error", "largest_residual_h", "largest_residual_v",
-    "largest_residual_h_over_rmse", "largest_residual_v_over_rmse", "survey_h", "survey_v",
-    "n_check_points", "measured_share", "quadrant_share", "n_blunders_h", "n_blunders_v",
-    "image_rms_px", "parallax_rms_px", "parallax_largest_px", "sigma0", "remaining_drift_p",
-    "sample_size",
-}  # fmt: skip
+ACCEPTANCE = "".join(
+    path.read_text(encoding="utf-8") for path in (ROOT / "posstats" / "acceptance").glob("*.py")
+)
+CODES = {"within", "exceeds", "investigate", *re.findall(r'Reason\("([^"]+)"', ACCEPTANCE)}
+UNTESTABLE = {samples.NO_POINTS, samples.TOO_FEW_POINTS, samples.TOO_MANY_POINTS,
+              samples.NO_SCATTER, samples.COLLINEAR}  # fmt: skip
 
 
 def places(forms: tuple[str, ...]) -> set[str]:
@@ -92,9 +87,11 @@ def test_every_reason_quantity_and_orientation_has_words():
     for words in (ENGLISH, CHINESE):
         for code in CODES:
             assert words.holds("reason", code)
+        for code in UNTESTABLE:
+            assert words.holds("untestable", code)
         for quantity in QUANTITIES:
             assert words.holds("quantity", quantity)
-        for name in ("bundle", "adjusted", "selected", "pos"):
+        for name in ORIENTATIONS:
             assert words.holds("orientation", name)
             assert words.holds("orientation_reason", name)
         assert words.holds("orientation_reason", "asked")

@@ -15,6 +15,7 @@ _Ints = NDArray[np.intp]
 
 _LEAST_PAIRS = 6
 _BETTER = 0.1  # the parallax of other axes over that of the measured ones
+_NOT_WORSE = 2.0
 _VARIANTS = np.array(
     [m * [[s], [t]] for m in (np.eye(2), np.eye(2)[::-1]) for s in (1, -1) for t in (1, -1)]
 )
@@ -25,9 +26,9 @@ def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
 
     The parallax is the median over the pairs of an image's rays with the other rays of their
     points; an image needs six pairs. An axis reversed along the base makes no parallax, so pairs
-    with bases along x and along y of the image are judged apart, and the worse of them counts. Not
-    seen are axes that are wrong in all images, and one reversed along the line of flight where no
-    other strip overlaps.
+    with bases along x and along y of the image are judged apart. Not seen are
+    axes that are wrong in all images, and one reversed along the line of flight where no other
+    strip overlaps.
     """
     first, second = _pairs(problem.point)
     first, second = np.append(first, second), np.append(second, first)
@@ -39,21 +40,24 @@ def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
     along_x = _base_along_x(problem, first, second)
     wrong = []
     for number, rows in zip(numbers, np.split(np.arange(len(image)), starts[1:]), strict=True):
-        median = _worse_median(parallax[:, rows], along_x[rows])
-        if len(rows) >= _LEAST_PAIRS and min(median) < _BETTER * median[0]:
+        if len(rows) >= _LEAST_PAIRS and _fits_better(parallax[:, rows], along_x[rows]):
             wrong.append(number)
     return np.array(wrong, dtype=np.intp)
 
 
-def _worse_median(parallax: _Floats, along_x: NDArray[np.bool_]) -> _Floats:
-    """(8,) of the variants' parallax (8, q): the larger of the medians of two kinds of pairs.
+def _fits_better(parallax: _Floats, along_x: NDArray[np.bool_]) -> bool:
+    """Whether one of the variants, parallax (8, q), is ten times better than the first.
 
-    Of all pairs where one kind is too rare: a single wrong neighbour could be all of the other.
+    It must be so for one kind of pairs and not worse for the other: a single wrong neighbour could
+    be all of one kind. Where one kind is rare, all pairs are judged together.
     """
     kinds = [rows for rows in (along_x, ~along_x) if rows.sum() >= _LEAST_PAIRS]
-    medians = [np.median(parallax[:, rows], axis=1) for rows in kinds]
-    worse: _Floats = np.max(medians, axis=0) if len(kinds) == 2 else np.median(parallax, axis=1)
-    return worse
+    if len(kinds) < 2:
+        kinds = [np.ones(len(along_x), dtype=bool)]
+    median = np.array([np.median(parallax[:, rows], axis=1) for rows in kinds])
+    better = (median < _BETTER * median[:, :1]).any(axis=0)
+    bearable = (median <= _NOT_WORSE * median[:, :1]).all(axis=0)
+    return bool((better & bearable).any())
 
 
 def _base_along_x(problem: BundleProblem, first: _Ints, second: _Ints) -> NDArray[np.bool_]:
