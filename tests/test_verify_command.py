@@ -4,7 +4,6 @@ import json
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from archive_documents import (
@@ -38,8 +37,8 @@ COMMAND = Path(sys.executable).with_name("posstats")
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
     """A document, its inputs, and a key; the steps of the small document are the installed ones."""
-    report = SimpleNamespace(reassess=reassess, render_document=render_document)
-    monkeypatch.setattr(verify_command, "import_module", lambda *_: report)
+    monkeypatch.setattr(verify_command, "reassess", reassess)
+    monkeypatch.setattr(verify_command, "render_document", render_document)
     monkeypatch.setattr(verify_command, "recompute", STEPS.recompute)
     monkeypatch.setattr(verify_command, "versions", lambda: {"numpy": "2.4"})
     monkeypatch.chdir(tmp_path)
