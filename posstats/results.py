@@ -4,9 +4,6 @@ Lengths in metres unless the name says mm or px, angles in radians, rates in rad
 available or cannot be tested is null.
 """
 
-import json
-import platform
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -15,6 +12,7 @@ from numpy.typing import NDArray
 from posstats import __version__
 from posstats.analysis import Analysis
 from posstats.parallax import NOTICEABLE, block_statistics
+from posstats.plain_values import RESULTS_SCHEMA, plain, versions
 from posstats.relative_orientation import RelativeOrientation
 from posstats.result_rows import (
     accuracy_row,
@@ -35,9 +33,6 @@ from posstats.result_rows import (
 
 Row = dict[str, Any]
 
-SCHEMA = "posstats-results/1"
-_PACKAGES = ("numpy", "scipy", "pandas", "statsmodels", "numba", "pyproj")
-
 
 def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]:
     """The results of an analysis as a dictionary of plain values.
@@ -49,7 +44,7 @@ def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]
     """
     values: dict[str, Any] = plain(
         {
-            "schema": SCHEMA,
+            "schema": RESULTS_SCHEMA,
             "posstats_version": __version__,
             "created": created,
             "versions": versions(),
@@ -93,31 +88,6 @@ def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]
         }
     )
     return values
-
-
-def to_json(values: dict[str, Any]) -> str:
-    """The text of results.json."""
-    return json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def plain(value: Any) -> Any:
-    """Numbers, text, lists and dictionaries only; NaN and infinity become None."""
-    if isinstance(value, dict):
-        return {key: plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(each) for each in value]
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
-
-
-def versions() -> dict[str, str]:
-    """Python and the main libraries."""
-    return {"python": platform.python_version()} | {name: version(name) for name in _PACKAGES}
 
 
 def _block(analysis: Analysis) -> Row:

@@ -11,10 +11,8 @@ from typing import Any
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
-from posstats.analysis import Settings, analyse
-from posstats.block_io import read_block
 from posstats.errors import PosstatsError
-from posstats.results import SCHEMA, results, to_json
+from posstats.plain_values import RESULTS_SCHEMA, to_json
 
 from .acceptance_data import Demand, assembled, embedded
 from .acceptance_writing import read_templates, write_document
@@ -110,6 +108,11 @@ def _results(
     if not source.is_dir():
         values, text = _read_results(source)
         return values, text, {}
+    # an analysis takes a second to import, and results.json needs none
+    from posstats.analysis import Settings, analyse
+    from posstats.block_io import read_block
+    from posstats.results import results
+
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
@@ -133,9 +136,9 @@ def _read_results(path: Path) -> tuple[dict[str, Any], bytes]:
         values = json.loads(text)
     except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
         raise PosstatsError(f"{path} is no results.json: {error}") from error
-    if not isinstance(values, dict) or values.get("schema") != SCHEMA:
+    if not isinstance(values, dict) or values.get("schema") != RESULTS_SCHEMA:
         raise PosstatsError(
-            f"{path} is no results.json of posstats analyse: its schema is not {SCHEMA}"
+            f"{path} is no results.json of posstats analyse: its schema is not {RESULTS_SCHEMA}"
         )
     strange = [name for name in _LISTS if not _is_list_of_rows(name, values.get(name))]
     strange += [name for name in ("block", "settings") if not isinstance(values.get(name), dict)]

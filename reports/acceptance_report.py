@@ -10,12 +10,14 @@ from posstats.errors import PosstatsError
 
 from . import acceptance_templates, cjk, fonts
 from .acceptance_document import build
+from .garbage import garbage_kept
 from .messages import catalogue
 
 SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn
 
 
+@garbage_kept()
 def render_document(
     acceptance: Mapping[str, Any], results: Mapping[str, Any], templates: Mapping[str, bytes]
 ) -> str:

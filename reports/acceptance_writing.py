@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.errors import PosstatsError
-from posstats.results import to_json
+from posstats.plain_values import to_json
 
 from .acceptance_data import ACCEPTANCE
 from .acceptance_report import render_document

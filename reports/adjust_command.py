@@ -11,7 +11,7 @@ from posstats.adjustment.results import adjustment_results, write_adjustment
 from posstats.block_io import read_block
 from posstats.calibration import calibrated
 from posstats.errors import PosstatsError
-from posstats.results import to_json
+from posstats.plain_values import to_json
 
 from . import adjustment_document, adjustment_verdict
 from .output import staged_folder

@@ -5,7 +5,8 @@ from typing import Any
 
 from posstats.analysis import Analysis
 from posstats.block_io import write_orientations
-from posstats.results import results, to_json
+from posstats.plain_values import to_json
+from posstats.results import results
 
 
 def write_analysis(analysis: Analysis, folder: Path, *, created: str) -> dict[str, Any]:

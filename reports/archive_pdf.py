@@ -12,6 +12,7 @@ from posstats.errors import PosstatsError
 
 from . import pdf
 from .archive_mending import mend
+from .garbage import garbage_kept
 
 Relationship = Literal["Data", "Source", "Supplement", "Alternative", "Unspecified"]
 BASE = "posstats:/"  # relative addresses lead nowhere; without any, WeasyPrint fails on some
@@ -60,6 +61,7 @@ class Attachment:
     relationship: Relationship = "Data"
 
 
+@garbage_kept()
 def render_archive(
     html_text: str, attachments: Sequence[Attachment], created: str, identifier: bytes
 ) -> bytes:

@@ -8,7 +8,8 @@ from posstats.analysis import Settings, analyse
 from posstats.block_io import read_block
 from posstats.calibration import calibrated
 from posstats.formats.toml_section import FILE
-from posstats.results import results, to_json
+from posstats.plain_values import to_json
+from posstats.results import results
 
 
 def recompute(folder: Path, pattern: dict[str, Any]) -> dict[str, Any]:

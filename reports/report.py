@@ -1,13 +1,11 @@
 """Everything that is written for one block: tables, figures, HTML and PDF."""
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from . import block_document, figures, html, tables
 from . import pdf as pdf_writer
 from .document import ReportDocument
+from .garbage import garbage_kept
 from .results_view import Results
 
 
@@ -20,7 +18,7 @@ def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
         What is missing for a PDF, where one was wanted and none could be made; else empty.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    with _garbage_kept():
+    with garbage_kept():
         tables.write_tables(results, folder / "tables")
         drawings = figures.draw(results)
         figures.write_figures(results, folder / "figures", drawings)
@@ -37,7 +35,7 @@ def write_pages(document: ReportDocument, path: Path, *, pdf: bool = True) -> st
     str
         What is missing for a PDF, where one was wanted and none could be made; else empty.
     """
-    with _garbage_kept():
+    with garbage_kept():
         page = html.render(document)
         path.with_suffix(".html").write_text(page, encoding="utf-8")
         try:
@@ -46,15 +44,3 @@ def write_pages(document: ReportDocument, path: Path, *, pdf: bool = True) -> st
         except pdf_writer.PdfUnavailableError as missing:
             return str(missing)
     return ""
-
-
-@contextmanager
-def _garbage_kept() -> Iterator[None]:
-    """No search for garbage: pages are trees that live to the end, and walking them costs 25 %."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()

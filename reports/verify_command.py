@@ -7,7 +7,7 @@ from pathlib import Path
 
 from posstats import __version__
 from posstats.errors import PosstatsError
-from posstats.results import versions
+from posstats.plain_values import versions
 
 from .acceptance_data import reassess
 from .acceptance_report import render_document

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats import __version__
-from posstats.results import versions
+from posstats.plain_values import versions
 from posstats.wucaps.adjustments import CONTROLS
 from posstats.wucaps.experiment import Row, SituationRun, run_situation
 from posstats.wucaps.findings import CRITERIA

@@ -15,8 +15,8 @@ from posstats.adjustment.snooping import Blunder
 from posstats.block_io import write_block
 from posstats.errors import PosstatsError
 from posstats.intersection import intersect
+from posstats.plain_values import to_json
 from posstats.reports.adjustment_verdict import paragraph
-from posstats.results import to_json
 from posstats.rotation import wrapped
 
 GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}

@@ -23,13 +23,14 @@ from small_scenario import small_block
 from posstats.analysis import Settings, analyse
 from posstats.block_io import read_block, write_block
 from posstats.errors import PosstatsError
+from posstats.plain_values import to_json
 from posstats.reports import verify_command
 from posstats.reports import verify_words as words
 from posstats.reports.archive_file import LARGEST_BYTES
 from posstats.reports.cli import cli
 from posstats.reports.recomputation import recompute
 from posstats.reports.verification_values import TOLERANCE
-from posstats.results import results, to_json
+from posstats.results import results
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

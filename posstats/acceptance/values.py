@@ -21,7 +21,7 @@ from posstats.acceptance.assessment import Assessment, Finding
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.reasons import Reason
-from posstats.results import plain, versions
+from posstats.plain_values import plain, versions
 
 Row = dict[str, Any]
 Results = Mapping[str, Any]

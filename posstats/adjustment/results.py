@@ -22,8 +22,8 @@ from posstats.adjustment.weights import variance_factors
 from posstats.bundle.parameters import UNITS
 from posstats.bundle.rays import CAMERA_PARAMETERS
 from posstats.formats.adjusted_writing import write_adjusted, write_points
+from posstats.plain_values import plain, versions
 from posstats.result_rows import accuracy_row, block_row, image_rows, residual_rows
-from posstats.results import plain, versions
 from posstats.rotation import ANGLE_NAMES, wrapped
 
 _Floats = NDArray[np.float64]
