@@ -10,6 +10,8 @@ from small_scenario import OMEGA_CONSTANT_RAD, OMEGA_DRIFT_RAD_PER_S, small_bloc
 
 from posstats import read_block
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
+from posstats.adjustment.axes import images_with_wrong_axes
+from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
 from posstats.block_io import write_block
@@ -289,10 +291,30 @@ def test_an_image_mirrored_along_the_flight_shows_against_the_next_strip(block):
     rays = ties.image == image
     along = np.argmax(np.abs(_flight_in_image(block, image)))
     xy[rays, along] *= -1.0
-    mirrored = replace(block, tie_points=replace(ties, xy_px=xy))
-    found = adjust_block(mirrored, AdjustmentSettings(control="corners", drift="strip"))
+    reversed_ = replace(block, tie_points=replace(ties, xy_px=xy))
+    found = adjust_block(reversed_, AdjustmentSettings(control="corners", drift="strip"))
     named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
     assert [row["image"] for row in named] == [block.orientations.image[image]]
+
+
+@pytest.mark.parametrize("signs", [(-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+def test_every_mirrored_image_is_found_and_no_other(block, signs):
+    problem = bundle_problem(block)
+    for image in range(len(block.orientations)):
+        assert images_with_wrong_axes(mirrored(problem, image, signs)).tolist() == [image]
+
+
+@pytest.mark.parametrize("image", [35, 43])
+def test_the_neighbour_of_a_mirrored_image_of_the_real_block_is_not_blamed(image):
+    problem = bundle_problem(read_block(shared_path("data", "ign-fd1305")))
+    assert images_with_wrong_axes(problem).tolist() == []
+    found = images_with_wrong_axes(mirrored(problem, image, (-1.0, 1.0)))
+    assert found.tolist() == [image]
+
+
+def mirrored(problem, image, signs):
+    own = (problem.image == image)[:, None]
+    return replace(problem, xy_px=np.where(own, problem.xy_px * np.array(signs), problem.xy_px))
 
 
 def _flight_in_image(block, image):
