@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from posstats import __version__
 from posstats.adjustment import Adjustment
+from posstats.adjustment.significance import parameter_covariance
 from posstats.block import Block, Orientations
 from posstats.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
 from posstats.bundle.pos_observations import antenna_positions, imu_angles
@@ -54,7 +55,7 @@ class Calibration:
     lever_arm_m
         (3,) u, v, w along image x, y, z: X_A = X_S + R (u, v, w); None if it was not estimated.
     covariance
-        (k, k) of the boresight, then the lever arm, rad and m, of the stated weights.
+        (k, k) of the boresight, then the lever arm, rad and m.
     block, camera
         Id of the calibration block, and of its camera.
     n_images
@@ -80,18 +81,22 @@ class Calibration:
 def calibrate(adjustment: Adjustment) -> Calibration:
     """The calibration that the adjustment of a calibration block gives.
 
-    Boresight, and lever arm if it was unknown too.
+    Boresight, and lever arm if it was unknown too, with a covariance scaled by sigma0.
 
     Raises
     ------
     PosstatsError
         If the boresight was no unknown, or the block has several cameras.
     """
-    return calibration_of(adjustment.block, adjustment.problem, adjustment.adjusted)
+    problem, adjusted = adjustment.problem, adjustment.adjusted
+    covariance = parameter_covariance(problem, adjusted)
+    return calibration_of(adjustment.block, problem, adjusted, covariance)
 
 
-def calibration_of(block: Block, problem: BundleProblem, adjusted: AdjustedBundle) -> Calibration:
-    """`calibrate` of the parts of an adjustment."""
+def calibration_of(
+    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, covariance: _Floats
+) -> Calibration:
+    """`calibrate` of the parts of an adjustment, with a covariance (k, k) of its parameters."""
     if len(block.cameras) > 1:
         raise PosstatsError(
             "a calibration belongs to one camera; the block has "
@@ -106,7 +111,7 @@ def calibration_of(block: Block, problem: BundleProblem, adjusted: AdjustedBundl
     return Calibration(
         boresight_rad=adjusted.common[boresight],
         lever_arm_m=adjusted.common[arm] if arm else None,
-        covariance=adjusted.common_covariance[np.ix_(used, used)],
+        covariance=covariance[np.ix_(used, used)],
         block=block.name,
         camera=block.cameras[0].id,
         n_images=len(block.orientations),

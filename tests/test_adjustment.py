@@ -4,12 +4,16 @@ import json
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from helpers import shared_path
+from scipy.spatial.transform import Rotation
 from small_scenario import OMEGA_CONSTANT_RAD, OMEGA_DRIFT_RAD_PER_S, small_block
 
 from posstats import read_block
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
+from posstats.adjustment.axes import images_with_wrong_axes
+from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
 from posstats.block_io import write_block
@@ -19,6 +23,7 @@ from posstats.plain_values import to_json
 from posstats.reports.adjustment_verdict import paragraph
 from posstats.rotation import wrapped
 
+OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
 GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
 
 
@@ -289,10 +294,30 @@ def test_an_image_mirrored_along_the_flight_shows_against_the_next_strip(block):
     rays = ties.image == image
     along = np.argmax(np.abs(_flight_in_image(block, image)))
     xy[rays, along] *= -1.0
-    mirrored = replace(block, tie_points=replace(ties, xy_px=xy))
-    found = adjust_block(mirrored, AdjustmentSettings(control="corners", drift="strip"))
+    reversed_ = replace(block, tie_points=replace(ties, xy_px=xy))
+    found = adjust_block(reversed_, AdjustmentSettings(control="corners", drift="strip"))
     named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
     assert [row["image"] for row in named] == [block.orientations.image[image]]
+
+
+@pytest.mark.parametrize("signs", [(-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+def test_every_mirrored_image_is_found_and_no_other(block, signs):
+    problem = bundle_problem(block)
+    for image in range(len(block.orientations)):
+        assert images_with_wrong_axes(mirrored(problem, image, signs)).tolist() == [image]
+
+
+@pytest.mark.parametrize("image", [35, 43])
+def test_the_neighbour_of_a_mirrored_image_of_the_real_block_is_not_blamed(image):
+    problem = bundle_problem(read_block(shared_path("data", "ign-fd1305")))
+    assert images_with_wrong_axes(problem).tolist() == []
+    found = images_with_wrong_axes(mirrored(problem, image, (-1.0, 1.0)))
+    assert found.tolist() == [image]
+
+
+def mirrored(problem, image, signs):
+    own = (problem.image == image)[:, None]
+    return replace(problem, xy_px=np.where(own, problem.xy_px * np.array(signs), problem.xy_px))
 
 
 def _flight_in_image(block, image):
@@ -306,8 +331,6 @@ def _flight_in_image(block, image):
     [
         (lambda b: replace(b, tie_points=replace(b.tie_points, xy_px=b.tie_points.xy_px * [-1, 1])),
          "x of the image coordinates has the wrong sign"),
-        (lambda b: scaled_angles(b, 0.9), "the angles are in degrees, not in gon"),
-        (lambda b: scaled_angles(b, 1.0 / 0.9), "the angles are in gon, not in degrees"),
     ],
 )  # fmt: skip
 def test_a_mistake_in_all_images_is_named(block, change, message):
@@ -315,9 +338,50 @@ def test_a_mistake_in_all_images_is_named(block, change, message):
         adjust_block(change(block), AdjustmentSettings(control="corners"))
 
 
-def scaled_angles(block, factor):
-    pos = block.orientations
-    return replace(block, orientations=pos.with_angles(factor * pos.angles_rad))
+@pytest.mark.parametrize(
+    ("true", "stated", "message"),
+    [
+        (("gon", OPK), ("deg", OPK), "the angles are in gon, not in degrees"),
+        (("deg", OPK), ("gon", OPK), "the angles are in degrees, not in gon"),
+        (("rad", OPK), ("deg", OPK), "the angles are in radians, not in degrees"),
+        (("deg", OPK), ("deg", RPH), "the angles are omega-phi-kappa, not roll-pitch-heading"),
+        (("deg", RPH), ("deg", OPK), "the angles are roll-pitch-heading, not omega-phi-kappa"),
+        (("deg", "pitch-roll-heading"), ("deg", RPH), "roll and pitch are exchanged"),
+    ],
+)
+def test_angles_of_a_file_that_are_no_such_angles_are_named(tmp_path, true, stated, message):
+    block = small_block(
+        block={"crs": "EPSG:32631", "origin_m": [520_000.0, 4_800_000.0]},
+        flight={"n_strips": 3, "images_per_strip": 5, "tilt_rad": 0.05},
+        tie_points={"per_model": 30},
+    )
+    rewritten(block, tmp_path, true, stated)
+    with pytest.raises(PosstatsError, match=message):
+        adjust_block(read_block(tmp_path), AdjustmentSettings(control="all"))
+
+
+def rewritten(block, folder, true, stated):
+    """The block's files with angles of a system and unit, but said to be of another one."""
+    write_block(replace(block, adjusted=None), folder)
+    table = pd.read_csv(folder / "orientations.csv")
+    angles = table[["omega", "phi", "kappa"]].to_numpy()
+    if true[1] != OPK:
+        # body axes (forward, right, down) in (east, north, up), image top forward
+        rotation = Rotation.from_euler("XYZ", angles, degrees=True).as_matrix()
+        body = rotation @ np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+        north_east_down = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ body
+        angles = Rotation.from_matrix(north_east_down).as_euler("ZYX", degrees=True)[:, ::-1]
+        if true[1] != RPH:
+            angles = angles[:, [1, 0, 2]]
+    angles[:, 2] %= 360.0
+    angles *= {"deg": 1.0, "gon": 1.0 / 0.9, "rad": np.pi / 180.0}[true[0]]
+    table = table.drop(columns=["omega", "phi", "kappa"])
+    table[stated[1].split("-")] = angles
+    table.to_csv(folder / "orientations.csv", index=False)
+    toml = (folder / "block.toml").read_text(encoding="utf-8")
+    toml = toml.replace('angle_unit = "deg"', f'angle_unit = "{stated[0]}"')
+    toml = toml.replace(f'angles = "{OPK}"', f'angles = "{stated[1]}"')
+    (folder / "block.toml").write_text(toml, encoding="utf-8")
 
 
 def test_a_control_point_without_any_error_is_refused(block):

@@ -73,10 +73,15 @@ def test_parameter_tests_are_those_of_dense_algebra(solved):
     problem, result, dense = solved
     dof = len(dense.residual) - dense.design.shape[1]
     sigma0 = np.sqrt(dense.residual @ dense.weight @ dense.residual / dof)
-    cofactor = np.diagonal(dense.cofactor)[-6:]
+    prior = np.array([1e6 * (parameter.sigma is not None) for parameter in SHIFTS])
+    measured = np.linalg.inv(dense.cofactor)
+    measured[-6:, -6:] -= np.diag(prior)
+    noise = sigma0**2 * measured
+    noise[-6:, -6:] += np.diag(prior)
+    sigma = np.sqrt(np.diagonal(dense.cofactor @ noise @ dense.cofactor))[-6:]
     tests = parameter_tests(problem, result)
     for at, test in enumerate(tests):
-        t = result.common[at] / (sigma0 * np.sqrt(cofactor[at]))
+        t = result.common[at] / sigma[at]
         assert (test.name, test.scope) == (SHIFTS[at].name, "block")
         assert test.unit == ("m" if at < 3 else "rad")
         np.testing.assert_allclose([test.t, test.p], [t, 2 * stats.t.cdf(-abs(t), dof)], rtol=1e-5)
@@ -128,6 +133,32 @@ def test_a_prior_that_outweighs_the_measurements_leaves_a_parameter_undetermined
     )
     assert loose.determined
     assert not tight.determined
+
+
+@pytest.mark.parametrize("factor", [0.25, 4.0])
+def test_a_parameter_known_from_its_prior_alone_has_the_priors_sigma_whatever_sigma0(factor):
+    # a shift of 0.1 mm beside GNSS of centimetres: nothing but its prior knows it
+    problem = noisy_problem((CommonParameter("gnss_z_shift", sigma=1e-4),))
+    result = adjust(rescaled(problem, dict.fromkeys(GROUPS, factor)))
+    assert abs(result.sigma0 * np.sqrt(factor) - 1.0) < 0.2
+    assert parameter_tests(problem, result)[0].sigma == pytest.approx(1e-4, rel=0.01)
+
+
+def test_the_sigma_of_a_parameter_is_the_scatter_where_priors_are_right_and_weights_are_not():
+    # the prior knows a shift as well as the measurements, stated half as accurate as they are
+    sigma_m, rng = 0.02, np.random.default_rng(11)
+    error, sigma = [], []
+    for seed in range(150):
+        shift = sigma_m * rng.standard_normal()
+        problem = noisy_problem((CommonParameter("gnss_x_shift", sigma=sigma_m),), seed=seed)
+        moved = problem.pos.antenna_m + np.array([shift, 0.0, 0.0])
+        problem = replace(problem, pos=replace(problem.pos, antenna_m=moved))
+        problem = rescaled(problem, dict.fromkeys(GROUPS, 4.0))
+        test = parameter_tests(problem, adjust(problem))[0]
+        error.append(test.value - shift)
+        sigma.append(test.sigma)
+    ratio = np.mean(np.square(error)) / np.mean(np.square(sigma))
+    assert abs(ratio - 1.0) < 4.0 * np.sqrt(2.0 / 150)
 
 
 def test_largest_effects_of_the_camera_are_those_of_differences():

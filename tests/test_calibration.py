@@ -5,6 +5,7 @@ scatter of the estimates over repeated flights.
 """
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -77,13 +78,42 @@ def test_the_covariance_of_the_boresight_holds_the_scatter_of_flights():
         bundle_problem(each, pos_parameters(each, "weighted"), control=control_points(each, "all"))
         for each in flights
     ]
+    adjusted = [adjust(problem) for problem in problems]
     found = [
-        calibration_of(flight, problem, adjust(problem))
-        for flight, problem in zip(flights, problems, strict=True)
+        calibration_of(flight, problem, each, each.common_covariance)
+        for flight, problem, each in zip(flights, problems, adjusted, strict=True)
     ]
     error = np.array([each.boresight_rad for each in found]) - ROLL_PITCH_YAW
     chi2 = np.einsum("si,ij,sj->", error, np.linalg.inv(found[0].covariance), error)
     assert 6.3 < chi2 < 37.2  # 99 % of chi-square with 18 degrees of freedom
+
+
+def test_the_covariance_is_scaled_by_sigma0_where_measurements_make_it():
+    # all stated standard deviations of measurements three times the true ones: sigma0 is a third
+    right = flown()
+    pos, stated = right.orientations, right.accuracy
+    timid = replace(
+        right,
+        orientations=replace(
+            pos,
+            sigma_position_m=3.0 * pos.sigma_position_m,
+            sigma_angles_rad=3.0 * pos.sigma_angles_rad,
+        ),
+        accuracy=replace(stated, image_px=3.0 * stated.image_px),
+        ground_points=replace(
+            right.ground_points,
+            sigma_xy_m=3.0 * right.ground_points.sigma_xy_m,
+            sigma_z_m=3.0 * right.ground_points.sigma_z_m,
+        ),
+    )
+    settings = AdjustmentSettings(drift="block", robust=False)
+    first, second = (
+        np.sqrt(np.diagonal(calibrate(adjust_block(each, settings)).covariance))
+        for each in (right, timid)
+    )
+    assert second[:2] == pytest.approx(first[:2], rel=0.1)
+    # the prior of the shift of kappa alone knows the yaw, whatever the measurements' noise
+    assert second[2] == pytest.approx(np.radians(0.05), rel=0.02)
 
 
 def test_a_lever_arm_is_estimated_on_request():
@@ -186,7 +216,7 @@ def test_a_calibration_of_another_camera_is_refused():
 def test_an_adjustment_without_boresight_gives_no_calibration():
     result = adjusted_block(flown(), "all", "none")
     with pytest.raises(PosstatsError, match="boresight was not an unknown"):
-        calibration_of(flown(), result.problem, result.adjusted)
+        calibration_of(flown(), result.problem, result.adjusted, np.empty((0, 0)))
 
 
 def test_a_calibrated_block_lists_the_file_among_its_inputs(tmp_path):
@@ -211,6 +241,8 @@ def test_the_command_estimates_a_file_that_another_flight_takes(tmp_path):
     assert (np.abs(calibration.boresight_rad - ROLL_PITCH_YAW) < 3.0 * sigma).all()
     assert f"boresight_pitch: {np.degrees(calibration.boresight_rad[1]):.4f}° ±" in told.output
     assert "lever_arm_w: " in told.output
+    assert re.search(r"sigma0 is (0\.9|1\.0)\d*\s+with", told.output)
+    assert "No blunders were found." in " ".join(told.output.split())
     told = run("analyse", tmp_path / "flight", "--out", tmp_path / "out", "--no-pdf",
                "--calibration", path)  # fmt: skip
     assert told.exit_code == 0, told.output

@@ -5,6 +5,9 @@ of an image against its neighbours is that of the errors of POS, with wrong ones
 the image.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +15,7 @@ from posstats.bundle.problem import BundleProblem
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]
+_Bools = NDArray[np.bool_]
 
 _LEAST_PAIRS = 6
 _BETTER = 0.1  # the parallax of other axes over that of the measured ones
@@ -26,46 +30,81 @@ def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
 
     The parallax is the median over the pairs of an image's rays with the other rays of their
     points; an image needs six pairs. An axis reversed along the base makes no parallax, so pairs
-    with bases along x and along y of the image are judged apart. Not seen are
-    axes that are wrong in all images, and one reversed along the line of flight where no other
+    with bases along x and along y of the image are judged apart. A wrong image spoils the pairs of
+    its neighbours too, so that those found are judged again without the pairs they form. Not seen
+    are axes that are wrong in all images, and one reversed along the line of flight where no other
     strip overlaps.
     """
-    first, second = _pairs(problem.point)
-    first, second = np.append(first, second), np.append(second, first)
-    image = problem.image[first]
-    order = np.argsort(image, kind="stable")
-    first, second, image = first[order], second[order], image[order]
-    numbers, starts = np.unique(image, return_index=True)
-    parallax = np.array([_parallax(problem, first, second, axes) for axes in _VARIANTS])
-    along_x = _base_along_x(problem, first, second)
-    wrong = []
-    for number, rows in zip(numbers, np.split(np.arange(len(image)), starts[1:]), strict=True):
-        if len(rows) >= _LEAST_PAIRS and _fits_better(parallax[:, rows], along_x[rows]):
-            wrong.append(number)
+    pairs = _pairs_of_images(problem)
+    found = [image for image, each in pairs.items() if each.fit_other_axes]
+    apart = {image: pairs[image].without(found) for image in found}
+    wrong = [k for k in found if len(apart[k].other) < _LEAST_PAIRS or apart[k].fit_other_axes]
     return np.array(wrong, dtype=np.intp)
 
 
-def _fits_better(parallax: _Floats, along_x: NDArray[np.bool_]) -> bool:
-    """Whether one of the variants, parallax (8, q), is ten times better than the first.
+@dataclass(frozen=True, eq=False)
+class _ImagePairs:
+    """The q pairs of rays of one image.
 
-    It must be so for one kind of pairs and not worse for the other: a single wrong neighbour could
-    be all of one kind. Where one kind is rare, all pairs are judged together.
+    Attributes
+    ----------
+    other
+        (q,) the other ray's image.
+    parallax
+        (8, q) of the choices of axes of the one image.
+    along_x
+        (q,) whether the base lies along its x.
     """
-    kinds = [rows for rows in (along_x, ~along_x) if rows.sum() >= _LEAST_PAIRS]
-    if len(kinds) < 2:
-        kinds = [np.ones(len(along_x), dtype=bool)]
-    median = np.array([np.median(parallax[:, rows], axis=1) for rows in kinds])
-    better = (median < _BETTER * median[:, :1]).any(axis=0)
-    bearable = (median <= _NOT_WORSE * median[:, :1]).all(axis=0)
-    return bool((better & bearable).any())
+
+    other: _Ints
+    parallax: _Floats
+    along_x: _Bools
+
+    def without(self, images: Sequence[int]) -> "_ImagePairs":
+        """The pairs with images that are none of these."""
+        kept = ~np.isin(self.other, images)
+        return _ImagePairs(self.other[kept], self.parallax[:, kept], self.along_x[kept])
+
+    @property
+    def fit_other_axes(self) -> bool:
+        """Whether one of the other choices is ten times better than the axes as measured.
+
+        It must be so for one kind of pairs and not worse for the other: a single wrong neighbour
+        could be all of one kind. Where one kind is rare, all pairs are judged together.
+        """
+        if len(self.other) < _LEAST_PAIRS:
+            return False
+        kinds = [rows for rows in (self.along_x, ~self.along_x) if rows.sum() >= _LEAST_PAIRS]
+        if len(kinds) < 2:
+            kinds = [np.ones(len(self.other), dtype=bool)]
+        median = np.array([np.median(self.parallax[:, rows], axis=1) for rows in kinds])
+        better = (median < _BETTER * median[:, :1]).any(axis=0)
+        bearable = (median <= _NOT_WORSE * median[:, :1]).all(axis=0)
+        return bool((better & bearable).any())
 
 
-def _base_along_x(problem: BundleProblem, first: _Ints, second: _Ints) -> NDArray[np.bool_]:
+def _pairs_of_images(problem: BundleProblem) -> dict[int, _ImagePairs]:
+    """The pairs of every image that has some."""
+    first, second = _pairs(problem.point)
+    first, second = np.append(first, second), np.append(second, first)
+    order = np.argsort(problem.image[first], kind="stable")
+    first, second = first[order], second[order]
+    parallax = np.array([_parallax(problem, first, second, axes) for axes in _VARIANTS])
+    along_x = _base_along_x(problem, first, second)
+    numbers, starts = np.unique(problem.image[first], return_index=True)
+    rows = np.split(np.arange(len(first)), starts[1:])
+    return {
+        int(number): _ImagePairs(problem.image[second[own]], parallax[:, own], along_x[own])
+        for number, own in zip(numbers, rows, strict=True)
+    }
+
+
+def _base_along_x(problem: BundleProblem, first: _Ints, second: _Ints) -> _Bools:
     """(q,) whether the base lies rather along x than along y of the first ray's image."""
     one, other = problem.image[first], problem.image[second]
     base = problem.position_m[other] - problem.position_m[one]
     in_image = np.einsum("qji,qj->qi", problem.ground_from_image[one], base)
-    along: NDArray[np.bool_] = np.abs(in_image[:, 0]) > np.abs(in_image[:, 1])
+    along: _Bools = np.abs(in_image[:, 0]) > np.abs(in_image[:, 1])
     return along
 
 

@@ -1,12 +1,13 @@
 """Why measurements contradict each other grossly: the usual mistakes are tried out.
 
-Wrong conventions pass the checks of the format: angles of another system or in another order, and
-coordinates whose axes are exchanged. Each is undone in turn and the block adjusted again; the first
-that makes the contradiction go away is named.
+Wrong conventions pass the checks of the format: angles of another system or unit or in another
+order, and coordinates whose axes are exchanged or reversed. Each is undone in turn and the block
+adjusted again; the first that makes the contradiction go away is named.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +18,18 @@ from posstats.block import Block, Orientations
 from posstats.bundle import adjust
 from posstats.bundle.parameters import CommonParameter
 from posstats.errors import ConvergenceError, GeometryError
+from posstats.formats.block_toml import RADIANS_PER_UNIT, AngleUnit, FileAngleSystem
+from posstats.formats.block_writing import source_of
+from posstats.formats.convention import Convention
 
 _Bools = NDArray[np.bool_]
+_Floats = NDArray[np.float64]
 
 GROSS = 10.0
 """sigma0 from which mistakes are tried out: no random error is off by so much."""
 _CURED = 0.2  # of sigma0: what is left by the right convention
+_SYSTEMS: tuple[FileAngleSystem, ...] = get_args(FileAngleSystem)
+_UNITS: dict[AngleUnit, str] = {"deg": "degrees", "rad": "radians", "gon": "gon"}
 
 
 def likely_mistake(
@@ -60,23 +67,11 @@ def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: _Boo
 
 def _undone(block: Block) -> Iterator[tuple[str, Block]]:
     """The block without each of the usual mistakes."""
+    for words, orientations in _angles_read_otherwise(block):
+        yield words, replace(block, orientations=orientations)
     pos = block.orientations
-    other = "phi-omega-kappa" if pos.system == "omega-phi-kappa" else "omega-phi-kappa"
-    changes: dict[str, Callable[[Orientations], Orientations]] = {
-        f"the angles are {other}, not {pos.system} (block.angles)": _other_system,
-        "the angles are in gon, not in degrees (block.angle_unit)": lambda o: o.with_angles(
-            0.9 * o.angles_rad
-        ),
-        "the angles are in degrees, not in gon (block.angle_unit)": lambda o: o.with_angles(
-            o.angles_rad / 0.9
-        ),
-        "omega and phi are exchanged": lambda o: o.with_angles(o.angles_rad[:, [1, 0, 2]]),
-        "x and y of the POS positions are exchanged": lambda o: replace(
-            o, position_m=_exchanged(o.position_m)
-        ),
-    }
-    for words, change in changes.items():
-        yield words, replace(block, orientations=change(pos))
+    pos = replace(pos, position_m=_exchanged(pos.position_m))
+    yield "x and y of the POS positions are exchanged", replace(block, orientations=pos)
     ties = block.tie_points
     for words, xy in (
         ("x and y of the image coordinates are exchanged", ties.xy_px[:, ::-1] * [-1.0, -1.0]),
@@ -93,13 +88,52 @@ def _undone(block: Block) -> Iterator[tuple[str, Block]]:
         )
 
 
-def _other_system(pos: Orientations) -> Orientations:
-    """The same numbers read in the other angle system."""
-    if pos.system == "omega-phi-kappa":
-        return replace(pos, system="phi-omega-kappa")
-    return replace(pos, system="omega-phi-kappa")
+def _angles_read_otherwise(block: Block) -> Iterator[tuple[str, Orientations]]:
+    """The numbers of the file taken for another system, another unit, or in another order.
+
+    They are those of the file, not the block's angles: these are within half a turn.
+    """
+    source, stated, _ = source_of(block, Convention.of_pos)
+    position = source.table[["x", "y", "z"]].to_numpy(dtype=float)[source.row]
+    columns = list(source.angle_columns)
+    angles = source.table[columns].to_numpy(dtype=float)[source.row]
+    read = stated.ground_from_image(position, angles)
+    for words, convention, order in _conventions(stated, columns):
+        rotation = convention.ground_from_image(position, angles[:, order])
+        # what was taken off since then (a calibration) stays off
+        rotation = rotation @ np.swapaxes(read, -1, -2) @ block.orientations.ground_from_image
+        yield words, _turned(block.orientations, rotation, convention)
 
 
-def _exchanged(position_m: NDArray[np.float64]) -> NDArray[np.float64]:
+def _conventions(
+    stated: Convention, columns: Sequence[str]
+) -> Iterator[tuple[str, Convention, list[int]]]:
+    """Words, convention and order of the columns of every other way to read angles."""
+    in_order = [0, 1, 2]
+    for angles in _SYSTEMS:
+        # roll, pitch and heading refer to true north, which no one knows without a crs
+        if angles != stated.angles and (stated.frame.crs or angles != "roll-pitch-heading"):
+            words = f"the angles are {angles}, not {stated.angles} (block.angles)"
+            yield words, replace(stated, angles=angles), in_order
+    unit = {radians: name for name, radians in RADIANS_PER_UNIT.items()}[stated.unit_rad]
+    for other, unit_rad in RADIANS_PER_UNIT.items():
+        if other != unit:
+            words = f"the angles are in {_UNITS[other]}, not in {_UNITS[unit]} (block.angle_unit)"
+            yield words, replace(stated, unit_rad=unit_rad), in_order
+    yield f"{columns[0]} and {columns[1]} are exchanged", stated, [1, 0, 2]
+
+
+def _turned(pos: Orientations, rotation: _Floats, convention: Convention) -> Orientations:
+    """The cameras with other rotations (n, 3, 3), about the point to which positions refer."""
+    lever = (pos.ground_from_image - rotation) @ np.array(convention.lever_arm_m)
+    return replace(
+        pos,
+        position_m=pos.position_m + lever,
+        angles_rad=convention.computing_angles(rotation),
+        system=convention.system,
+    )
+
+
+def _exchanged(position_m: _Floats) -> _Floats:
     """X and y exchanged."""
     return np.ascontiguousarray(position_m[:, [1, 0, 2]])

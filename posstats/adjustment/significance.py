@@ -62,8 +62,7 @@ class ParameterTest:
     name, scope, unit
         Of the parameter.
     value, sigma
-        Estimate and its standard deviation, scaled by the estimated sigma0; not that of a
-        parameter known from its prior, which says nothing of the measurements' noise.
+        Estimate and its standard deviation, see `parameter_covariance`.
     t, p
         Value over sigma, two-sided. Conservative for a prior that is no measurement but an
         assumption of 0: this draws the value to 0, which the sigma does not contain.
@@ -141,17 +140,29 @@ def global_test(result: AdjustedBundle) -> GlobalTest:
     return GlobalTest(result.sigma0, dof, 2.0 * float(tail))
 
 
+def scale(result: AdjustedBundle) -> float:
+    """sigma0, by which standard deviations are scaled; 1 without redundancy."""
+    return result.sigma0 if result.dof > 0 else 1.0
+
+
+def parameter_covariance(problem: BundleProblem, result: AdjustedBundle) -> _Floats:
+    """(k, k) of the additional parameters: sigma0 scales the measurements, not the priors.
+
+    With Q the inverse of N + P, N of the measurements and P the weights of the priors, it is
+    Q (sigma0^2 N + P) Q. What the measurements know is scaled by sigma0; what is known from its
+    prior alone keeps the prior's standard deviation, of which residuals say nothing.
+    """
+    variance, q = scale(result) ** 2, result.common_covariance
+    prior = np.array([parameter.weight for parameter in problem.parameters])
+    covariance: _Floats = variance * q + (1.0 - variance) * (q * prior) @ q
+    return covariance
+
+
 def parameter_tests(problem: BundleProblem, result: AdjustedBundle) -> tuple[ParameterTest, ...]:
     """Student's test of every additional parameter, with the adjustment's degrees of freedom."""
     stated = np.sqrt(np.diagonal(result.common_covariance))
     effect = stated * largest_effects(problem)
-    determined = [
-        _determined(parameter, float(stated[at]), float(effect[at]))
-        for at, parameter in enumerate(problem.parameters)
-    ]
-    prior_alone = [p.sigma is not None and not d
-                   for p, d in zip(problem.parameters, determined, strict=True)]  # fmt: skip
-    sigma = np.where(prior_alone, 1.0, result.sigma0) * stated
+    sigma = np.sqrt(np.diagonal(parameter_covariance(problem, result)))
     t = result.common / sigma
     p = 2.0 * stats.t.sf(np.abs(t), result.dof) if result.dof > 0 else np.full(len(t), np.nan)
     return tuple(
@@ -163,7 +174,7 @@ def parameter_tests(problem: BundleProblem, result: AdjustedBundle) -> tuple[Par
             float(t[at]),
             float(p[at]),
             bool(p[at] < SIGNIFICANCE),
-            determined[at],
+            _determined(parameter, float(stated[at]), float(effect[at])),
             UNITS[parameter.name],
         )
         for at, parameter in enumerate(problem.parameters)

@@ -43,6 +43,7 @@ from posstats.adjustment.significance import (
     global_test,
     local_tests,
     parameter_tests,
+    scale,
 )
 from posstats.adjustment.snooping import Snooping, snoop
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
@@ -132,11 +133,6 @@ class Adjustment:
             return None
         used = {self.block.tie_points.point_id[k] for k in self.problem.control.point}
         return _some(surveyed, np.array([point in used for point in surveyed.point], dtype=bool))
-
-
-def scale(adjusted: AdjustedBundle) -> float:
-    """sigma0, or 1 without redundancy."""
-    return adjusted.sigma0 if adjusted.dof > 0 else 1.0
 
 
 def adjust_block(

@@ -153,9 +153,13 @@ def run_situation(
 
 
 def calibrated_from(block: Block) -> Calibration:
-    """The boresight of a flight, from its adjustment with all control points."""
+    """The boresight of a flight, from its adjustment with all control points.
+
+    Its covariance is that of the stated weights: they are those of the simulation.
+    """
     result = adjusted_block(block, "all", "weighted")
-    return calibration_of(block, result.problem, result.adjusted)
+    adjusted = result.adjusted
+    return calibration_of(block, result.problem, adjusted, adjusted.common_covariance)
 
 
 def _direct(
