@@ -18,7 +18,7 @@ def paragraph(results: Results) -> str:
         _errors(results),
         _deformation(results),
         _check_points(results),
-        _blunders(results),
+        blunders(results),
         _open(results),
     )
     return " ".join(sentence for sentence in sentences if sentence)
@@ -107,7 +107,8 @@ def _m(value: float) -> str:
     return fmt.with_unit(value, "m")
 
 
-def _blunders(results: Results) -> str:
+def blunders(results: Results) -> str:
+    """What was taken out, in a sentence."""
     taken = rows(results, "blunders", found_by="snooping", taken_out=True)
     held = rows(results, "blunders", taken_out=False)
     parts = []

@@ -35,8 +35,9 @@ def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> I
     yield f"camera {calibration.camera}, from {calibration.n_images} images of {calibration.block}"
     yield from _described(calibration)
     results = adjustment_results(adjustment)
+    yield f"sigma0: {fmt.number(results['sigma0'])} ({fmt.p_phrase(results['chi2_p'])})"
     yield ""
-    yield from textwrap.wrap(adjustment_verdict.paragraph(results), WIDTH)
+    yield from textwrap.wrap(adjustment_verdict.blunders(results), WIDTH)
     for warning in results["warnings"]:
         yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
     yield ""
