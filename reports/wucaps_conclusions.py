@@ -16,7 +16,7 @@ from posstats.wucaps.situations import Situation
 
 from . import format as fmt
 from .paper_conclusions import Conclusion
-from .wucaps_words import BLOCKS, SITUATIONS
+from .wucaps_words import BLOCKS, SITUATIONS, TERRAIN
 
 _LIMITS = f"{fmt.fixed(MOST_HORIZONTAL, 1)} (H) and {fmt.fixed(MOST_VERTICAL, 1)} (V)"
 _NEAR = f"{fmt.fixed(100.0 * NOTICEABLE, 0)}\u00a0%"
@@ -185,5 +185,5 @@ def _tested(
 def _seeds(criterion: str, situations: tuple[Situation, ...]) -> str:
     n = len(repeated()[situations[0]])
     held = fmt.joined(fmt.fixed(n * share(criterion, situation), 0) for situation in situations)
-    where = f" ({fmt.joined(situations)})" if len(situations) > 1 else ""
+    where = f" ({fmt.joined(TERRAIN[each] for each in situations)})" if len(situations) > 1 else ""
     return f"Holds for {held} of {n} seeds{where}."

@@ -12,7 +12,7 @@ from .document import SIMULATED, ReportDocument, numbered
 from .key_figures import KeyFigure
 from .paper_conclusions import Conclusion
 from .wucaps_sections import opening, sections
-from .wucaps_words import CONTROL
+from .wucaps_words import CONTROL, TERRAIN
 
 
 def build(
@@ -72,7 +72,7 @@ def _verdict(run: Reproduction, found: Sequence[Conclusion]) -> str:
         horizontal, vertical = each.ratios(each.recommended)
         parts.append(
             f"{fmt.number(horizontal)} times (horizontal) and {fmt.number(vertical)} times "
-            f"(vertical) in the {situation} block ({control})"
+            f"(vertical) in the {TERRAIN[situation]} block ({control})"
         )
     return (
         "The photographs of the paper (section 2) are not public, so its two situations are "
@@ -92,7 +92,7 @@ def _key_figures(run: Reproduction) -> tuple[KeyFigure, ...]:
         name = each.recommended
         figures.append(
             KeyFigure(
-                f"{situation.capitalize()}, calibrated POS",
+                f"{TERRAIN[situation].capitalize()}, calibrated POS",
                 _pair(each.calibrated_horizontal_m, each.calibrated_vertical_m),
                 "m",
                 "check points, RMSE H / V",
@@ -100,7 +100,7 @@ def _key_figures(run: Reproduction) -> tuple[KeyFigure, ...]:
         )
         figures.append(
             KeyFigure(
-                f"{situation.capitalize()}, adjusted",
+                f"{TERRAIN[situation].capitalize()}, adjusted",
                 _pair(getattr(each, f"{name}_horizontal_m"), getattr(each, f"{name}_vertical_m")),
                 "m",
                 f"control {CONTROL[RECOMMENDED[situation]]}; at best {best}\u00a0m",

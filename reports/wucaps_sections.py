@@ -13,7 +13,7 @@ from . import wucaps_tables as tables
 from .content import Bullets, Content, Paragraph, Part
 from .paper_conclusions import Conclusion
 from .tables import Table, prose_column, text_column
-from .wucaps_words import CONTROL, SITUATIONS
+from .wucaps_words import CONTROL, SITUATIONS, TERRAIN
 
 _SIDES = ("horizontal", "vertical")
 
@@ -182,7 +182,7 @@ def _over_reference(run: Reproduction) -> str:
         ]
         for s in run.runs
     }
-    return fmt.joined(f"{' / '.join(each)} ({s}, H / V)" for s, each in ratios.items())
+    return fmt.joined(f"{' / '.join(each)} ({TERRAIN[s]}, H / V)" for s, each in ratios.items())
 
 
 def _remarks(run: Reproduction) -> Part:
@@ -217,11 +217,12 @@ def _regression(run: Reproduction) -> str:
         if n_chosen == 0
         else f"correct {n_chosen} angles here"
     )
+    where = fmt.joined(TERRAIN[situation] for situation in run.runs)
     return (
         f"The first paper's regression on time, by its own rules (R² of at least 0.8), would "
         f"{picked}. Taking off the line of every angle and strip in spite of the rules helps, but "
-        f"leaves vertical errors of {vertical} ({fmt.joined(run.runs)}): the angles estimated from "
-        "parallax are no better than the GNSS that holds the block, whose own shifts and drifts it "
+        f"leaves vertical errors of {vertical} ({where}): the angles estimated from parallax are "
+        "no better than the GNSS that holds the block, whose own shifts and drifts it "
         "does not touch."
     )
 
@@ -242,7 +243,7 @@ def _raw_angles(run: Reproduction) -> str:
 def _free(run: Reproduction) -> str:
     sizes = fmt.joined(
         f"{fmt.with_unit(each.measures('free', 'centre').horizontal_m, 'm')} / "
-        f"{fmt.with_unit(each.measures('free', 'centre').vertical_m, 'm')} ({situation})"
+        f"{fmt.with_unit(each.measures('free', 'centre').vertical_m, 'm')} ({TERRAIN[situation]})"
         for situation, each in run.runs.items()
     )
     return (

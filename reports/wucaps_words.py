@@ -6,6 +6,7 @@ from posstats.wucaps.situations import Situation
 
 from .format import NARROW_SPACE
 
+TERRAIN: dict[Situation, str] = {"flat": "flat", "mountain": "mountainous"}
 SITUATIONS: dict[Situation, str] = {
     "flat": "flat, 1:2500",
     "mountain": f"mountainous, 1:32{NARROW_SPACE}000",

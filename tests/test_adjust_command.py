@@ -145,6 +145,23 @@ def test_the_strongest_correlations_are_shown(values):
     assert "15 smaller ones" in table.notes[0]
 
 
+def test_rows_that_tables_of_points_leave_out_are_counted(values):
+    point = {"point": "C", "n_rays": 4, "orientation": "bundle", "largest_w": 1.0}
+    point |= {f"{name}{axis}_m": 0.01 for name in ("d", "sigma_") for axis in "xyz"}
+    for n, notes in ((60, ()), (75, ("15 more are in adjustment.json.",))):
+        points = [point] * n
+        listed = values | {"control_points": points, "check_point_residuals": points}
+        for table in (adjustment_tables.control_points, adjustment_tables.check_point_list):
+            assert len(table(listed).rows) == 60
+            assert table(listed).notes == notes
+
+
+def test_the_sizes_of_both_tests_of_blunders_are_told(values):
+    notes = " ".join(adjustment_tables.groups(values).notes)
+    assert "size 0.1 %" in notes
+    assert "at 5 %" in notes
+
+
 def test_an_adjustment_that_fails_writes_nothing(tmp_path):
     block = small_block(flight={"n_strips": 2, "images_per_strip": 4})
     turned = block.orientations.angles_rad + np.array([np.pi, 0.0, 0.0])

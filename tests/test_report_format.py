@@ -45,6 +45,12 @@ def test_angles_take_the_unit_they_are_read_in():
     assert fmt.angle(0.0185).replace("\u00a0", " ") == "18.5 mrad (1.06°)"
 
 
+def test_no_space_parts_degrees_from_their_number():
+    assert fmt.with_unit(0.005, "°") == "0.00500°"
+    assert fmt.with_unit(0.005, "°/100 s") == "0.00500°/100 s"
+    assert fmt.with_unit(0.005, "m") == "0.00500\u00a0m"
+
+
 def test_a_rate_is_told_per_second_and_per_hour():
     # 4.68e-7 rad/s * 3600 s/h * 57.29578 deg/rad
     assert "0.0965°/h" in fmt.rate(4.68e-7)

@@ -132,6 +132,8 @@ def test_numbers_of_the_page_are_readable(page):
     text = plain(" ".join(read(page.split("</style>", 1)[1]).texts))
     assert not re.search(r"\b(None|nan|NaN|inf|null)\b", text)
     assert not re.search(r"\d\.\d{6,}", text)
+    assert "mountainous" in text
+    assert not re.search(r"(?<!wucaps-)\bmountain\b", text, re.IGNORECASE)
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
