@@ -16,6 +16,8 @@ from posstats.plain_values import RESULTS_SCHEMA, to_json
 
 from .acceptance_data import Demand, assembled, embedded
 from .acceptance_writing import read_templates, write_document
+from .archive_pdf import Attachment
+from .archive_reading import MALFORMED
 from .output import staged_folder
 from .progress import Advance, progress_bar
 from .summary import WIDTH
@@ -76,14 +78,32 @@ def judge(source: Path, out: Path, wish: Wish, *, pdf: bool = True) -> tuple[str
         values, text, sources = _results(source, wish.orientation, bar)
         bar("assessment", 0.7)
         sources |= {f"templates/{name}": content for name, content in templates.items()}
-        files = embedded(values, text, demand, sources)
-        acceptance = assembled(values, demand, files, now())
+        files, acceptance = _judged(source, values, text, demand, sources)
         bar("writing the document", 0.75)
         missing = write_document(acceptance, values, templates, files, stage, pdf=pdf)
     written = ["acceptance.html"] + (["acceptance.pdf"] if pdf and not missing else [])
     lines = [*_summary(acceptance), "", *([missing] if missing else [])]
     lines.append(f"document: {', '.join(str(out / name) for name in written)}")
     return acceptance["verdict"], lines
+
+
+def _judged(
+    source: Path,
+    values: dict[str, Any],
+    text: bytes,
+    demand: Demand,
+    sources: dict[str, bytes],
+) -> tuple[list[Attachment], dict[str, Any]]:
+    """The embedded files and the values of the document; a file that is none is named."""
+    try:
+        files = embedded(values, text, demand, sources)
+        return files, assembled(values, demand, files, now())
+    except MALFORMED as error:
+        if source.is_dir():  # results of ours, so a fault of ours
+            raise
+        raise PosstatsError(
+            f"{source} does not hold values as posstats analyse writes them: {error!r}"
+        ) from error
 
 
 def _profile_and_contract(wish: Wish) -> tuple[Profile, Contract]:

@@ -185,8 +185,14 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
 @click.option(
     "--trust", type=FOLDER, metavar="CERT.pem", help="Whom to trust: certificates of authorities."
 )
+@click.option(
+    "--templates",
+    type=FOLDER,
+    metavar="DIR",
+    help="Templates that you know; pages of others are not believed.",
+)
 @clear_errors
-def verify(file: Path, inputs: Path | None, trust: Path | None) -> None:
+def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path | None) -> None:
     """Verify the acceptance document FILE.pdf: a line a question.
 
     Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
@@ -199,7 +205,7 @@ def verify(file: Path, inputs: Path | None, trust: Path | None) -> None:
     from .verification import holds
     from .verify_command import verify_file
 
-    answers = verify_file(file, inputs, trust)
+    answers = verify_file(file, inputs, trust, templates)
     for each in answers:
         click.echo(each.line)
     if not holds(answers):

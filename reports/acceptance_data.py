@@ -169,14 +169,22 @@ def statement(assessment: Assessment) -> str:
 
 def _filled(chosen: ChosenStatement) -> str:
     class_m, found_m = chosen.class_m, chosen.found_m
+    digits = _honest_digits(found_m, class_m)
     text = chosen.template.format(
         class_m="" if class_m is None else fmt.as_chosen(class_m),
         class_cm="" if class_m is None else fmt.as_chosen(100.0 * class_m),
-        found_m="" if found_m is None else fmt.number(found_m),
-        found_cm="" if found_m is None else fmt.number(100.0 * found_m),
+        found_m="" if found_m is None else fmt.number(found_m, digits),
+        found_cm="" if found_m is None else fmt.number(100.0 * found_m, digits),
         n_points=fmt.count(chosen.n_points),
     )
     return text if text.endswith((".", "。")) else f"{text}."
+
+
+def _honest_digits(found_m: float | None, class_m: float | None) -> int:
+    """Significant digits with which a value within its class does not round beyond it."""
+    if found_m is None or class_m is None or found_m > class_m:
+        return 3
+    return next((n for n in range(3, 10) if float(f"{found_m:.{n}g}") <= class_m), 10)
 
 
 def _sha256(content: bytes) -> str:

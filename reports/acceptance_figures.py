@@ -213,10 +213,9 @@ def _differences(points: Sequence[Row]) -> FloatArray:
 
 def _allowed_sigmas(acceptance: Mapping[str, Any]) -> list[float | None]:
     """Standard deviation per component of normal errors without mean that just meet the class."""
-    stated = acceptance["product"]
     limits = {r["quantity"]: r["limit"] for r in acceptance["requirements"] if r["limit"]}
-    plane = stated.get("class_h_m") or limits.get("rmse_h") or limits.get("product_rmse_h")
-    height = stated.get("class_v_m") or limits.get("rmse_v") or limits.get("product_rmse_v")
+    plane = limits.get("rmse_h") or limits.get("product_rmse_h")
+    height = limits.get("rmse_v") or limits.get("product_rmse_v")
     side = plane / math.sqrt(2.0) if plane else None
     return [side, side, height or None]
 

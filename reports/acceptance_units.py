@@ -1,5 +1,6 @@
 """Numbers of the acceptance document: one unit of length throughout, and a form per quantity."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -100,7 +101,14 @@ def margin(row: Row, unit: Lengths) -> str:
     """The margin with its sign: above zero within the limit."""
     if fmt.is_missing(row["margin"]):
         return fmt.MISSING
-    text = value(row, row["margin"], unit)
+    text = next(
+        (
+            each
+            for each in (value(row, row["margin"], unit, more) for more in range(MOST_DECIMALS))
+            if row["margin"] == 0.0 or re.search("[1-9]", each)
+        ),
+        value(row, row["margin"], unit),
+    )
     return text if row["margin"] <= 0.0 else f"+{text}"
 
 

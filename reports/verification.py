@@ -5,7 +5,7 @@ be found out without a signature is who wrote it.
 """
 
 import datetime as dt
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from .archive_file import UnreadableArchiveError, part, read_file
@@ -35,6 +35,7 @@ def verify(
     *,
     inputs: Path | None = None,
     trust: Sequence[bytes] | None = None,
+    templates: Mapping[str, bytes] | None = None,
     now: dt.datetime,
 ) -> Iterator[Answer]:
     """Answer every question on a document, one after the other.
@@ -47,6 +48,8 @@ def verify(
         Block folder with the input files; None: not asked for.
     trust
         Certificates, DER, that a signer's certificate has to lead to; None: not asked for.
+    templates
+        Those that the user knows, by name; pages of others are not believed.
 
     Raises
     ------
@@ -65,7 +68,7 @@ def verify(
     yield _on_updates(archive, n_signatures)
     yield embedded_files(archive)
     yield assessment(archive, steps)
-    yield pages(archive, steps)
+    yield pages(archive, steps, templates)
     yield from _on_inputs(archive, inputs, steps)
 
 

@@ -1,6 +1,6 @@
 """Whether the pages say what the data say: the pages are made again and compared."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import pikepdf
 from jinja2 import TemplateError
@@ -21,14 +21,25 @@ from .verify_words import (
     failed,
     listed,
     other_versions,
+    own_templates,
     same_text,
 )
 
 TEMPLATES = "templates/"
 
 
-def pages(archive: Archive, steps: Steps) -> Answer:
-    """Make the document again from the data inside it, and compare it with the first revision."""
+def pages(archive: Archive, steps: Steps, known: Mapping[str, bytes] | None = None) -> Answer:
+    """Make the document again from the data inside it, and compare it with the first revision.
+
+    Parameters
+    ----------
+    known
+        Templates that the user knows, by name. Others that the document brings along may say or
+        hide anything, whatever the data: then nothing is compared.
+    """
+    strange = _unknown_templates(archive, known or {})
+    if strange:
+        return failed(PAGES, own_templates(strange))
     try:
         again = rebuilt(archive, steps)
         if again == archive.file.first:
@@ -42,15 +53,27 @@ def pages(archive: Archive, steps: Steps) -> Answer:
         return failed(PAGES, f"they cannot be compared ({type(error).__name__}: {error})")
 
 
-def rebuilt(archive: Archive, steps: Steps) -> bytes:
-    """The document made again from the data inside it."""
-    templates = {
+def _unknown_templates(archive: Archive, known: Mapping[str, bytes]) -> list[str]:
+    """Names of the document's templates and style sheets that the user does not know."""
+    return [
+        short
+        for short, content in _templates(archive).items()
+        if short.endswith((".j2", ".css")) and known.get(short) != content
+    ]
+
+
+def _templates(archive: Archive) -> dict[str, bytes]:
+    return {
         name.removeprefix(TEMPLATES): file.content
         for name, file in archive.files.items()
         if name.startswith(TEMPLATES)
     }
+
+
+def rebuilt(archive: Archive, steps: Steps) -> bytes:
+    """The document made again from the data inside it."""
     acceptance = archive.acceptance
-    html = steps.render_document(acceptance, archive.results, templates)
+    html = steps.render_document(acceptance, archive.results, _templates(archive))
     attachments = [
         Attachment(name, file.content, file.relationship)  # type: ignore[arg-type]
         for name, file in archive.files.items()

@@ -11,6 +11,7 @@ from posstats.plain_values import versions
 
 from .acceptance_data import reassess
 from .acceptance_report import render_document
+from .acceptance_writing import read_templates
 from .archive_file import read_file
 from .recomputation import recompute
 from .verification import verify
@@ -19,13 +20,15 @@ from .verification_steps import Steps
 from .verify_words import Answer
 
 
-def verify_file(path: Path, inputs: Path | None, trust_file: Path | None) -> Sequence[Answer]:
+def verify_file(
+    path: Path, inputs: Path | None, trust_file: Path | None, templates: Path | None = None
+) -> Sequence[Answer]:
     """Answer every question on the document `path`.
 
     Raises
     ------
     PosstatsError
-        If the trusted certificate cannot be read, or the inputs are no folder.
+        If the trusted certificate or the templates cannot be read, or the inputs are no folder.
     OSError
         If a file cannot be read.
     """
@@ -33,7 +36,8 @@ def verify_file(path: Path, inputs: Path | None, trust_file: Path | None) -> Seq
         raise PosstatsError(f"{inputs} is no block folder")
     trust = None if trust_file is None else _trust(trust_file)
     now = dt.datetime.now(dt.UTC)
-    return list(verify(path, steps(), inputs=inputs, trust=trust, now=now))
+    known = None if templates is None else read_templates(templates)
+    return list(verify(path, steps(), inputs=inputs, trust=trust, templates=known, now=now))
 
 
 def steps() -> Steps:

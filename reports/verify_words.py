@@ -91,6 +91,15 @@ def trust_question(name: str) -> str:
     return f"is the signer of {name} trusted"
 
 
+def own_templates(names: Sequence[str]) -> str:
+    """Why pages of unknown templates are not believed."""
+    return (
+        f"they are laid out by templates of the document's own ({listed(names)}), which can say or"
+        " hide anything: give the folder where you know them from (--templates), or trust the data"
+        " alone"
+    )
+
+
 def same_text(other: str) -> str:
     """Pages of other versions: what was compared, and what was not."""
     return (

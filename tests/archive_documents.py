@@ -130,7 +130,7 @@ def contents(results, *, change=lambda acceptance: None) -> tuple[dict, list[Att
         Attachment("profile.toml", PROFILE, "Source"),
         Attachment("block.toml", INPUTS["block.toml"], "Source"),
         Attachment("tables/points.csv", b"point,dx_m\np1,0.1\n", "Supplement"),
-        Attachment("templates/letterhead.html.j2", TEMPLATE, "Supplement"),
+        Attachment("templates/logo.svg", TEMPLATE, "Supplement"),
     ]
     pattern = {
         "schema": "posstats-acceptance/1",

@@ -195,6 +195,20 @@ def test_templates_of_a_company_are_embedded_and_used_again(folder, analysed, tm
     assert run("verify", document).exit_code == 0
 
 
+def test_pages_of_templates_that_nobody_knows_are_not_believed(analysed, tmp_path):
+    templates = tmp_path / "templates"
+    templates.mkdir()
+    (templates / "acceptance_summary.html.j2").write_text("<p>Accepted</p>", encoding="utf-8")
+    done = run("accept", analysed, "--profile", "asprs-2024", "--class", "10cm", "--templates",
+               templates, "--out", tmp_path / "out")  # fmt: skip
+    assert done.exit_code == 3
+    document = tmp_path / "out" / "acceptance.pdf"
+    verified = run("verify", document)
+    assert verified.exit_code == 1
+    assert "templates of the document's own (acceptance_summary.html.j2)" in verified.output
+    assert run("verify", document, "--templates", templates).exit_code == 0
+
+
 def test_a_length_needs_its_unit():
     assert length_m("10cm") == 0.1
     assert length_m(" 100 mm ") == 0.1

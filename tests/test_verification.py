@@ -228,7 +228,7 @@ def test_missing_unlisted_and_unassessed_files_are_named(ask, inputs):
 
     said = failures(ask(document(results_of(inputs), change=edit)))[words.FILES]
     assert "templates/other.j2 is missing" in said
-    assert "templates/letterhead.html.j2 is not listed" in said
+    assert "templates/logo.svg is not listed" in said
     assert "results.json has another relationship" in said
     assert "results.json is not what was assessed" in said
 

@@ -4,6 +4,7 @@ A verdict follows the point estimates, as the standards want it. The 95 % interv
 them, and where an interval holds the limit, the number of check points that would decide.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -81,7 +82,7 @@ class Assessment:
         What the standard has said of the product; none where what it claims was not found.
     score, grade
         Of GB/T 24356: the smallest of the scores, None if a basis is not met, and its grade; None
-        without a basis.
+        without a basis, or where one could not be assessed.
     """
 
     profile: Profile
@@ -129,15 +130,11 @@ def assess(
 
 def _quality(findings: Sequence[Finding]) -> tuple[float | None, str | None]:
     """The smallest score and its grade: a quality is as good as its worst part."""
-    scores = [
-        each.score
-        for each in findings
-        if each.requirement.basis_of_score and each.found is not None
-    ]
-    if not scores:
+    bases = [each for each in findings if each.requirement.basis_of_score]
+    if not bases or any(each.found is None for each in bases):
         return None, None
-    reached = [score for score in scores if score is not None]
-    score = min(reached) if len(reached) == len(scores) else None
+    reached = [each.score for each in bases if each.score is not None]
+    score = min(reached) if len(reached) == len(bases) else None
     return score, gbt_grade(score)
 
 
@@ -204,9 +201,13 @@ def _known(value: float) -> float | None:
 
 
 def _deciding_number(found: Found, limit: float) -> int | None:
+    """Of the fit alone, against what the survey leaves of the limit."""
     if found.df_per_point is None or not found.low < limit < found.high:
         return None
-    return n_to_decide(found.value, limit, found.df_per_point)
+    if limit <= found.survey_m:
+        return None
+    fit, left = (math.sqrt(each**2 - found.survey_m**2) for each in (found.value, limit))
+    return n_to_decide(fit, left, found.df_per_point)
 
 
 def _statements(assessed: Assessment, language: str) -> tuple[ChosenStatement, ...]:
@@ -216,7 +217,12 @@ def _statements(assessed: Assessment, language: str) -> tuple[ChosenStatement, .
 
 
 def _statement(assessed: Assessment, component: Component, language: str) -> ChosenStatement | None:
-    """What the standard has said of a component; nothing where a claim of it was not found."""
+    """What the standard has said of a component; nothing where a claim of it was not found.
+
+    Nor of a product that is rejected: the words would be read without the verdict.
+    """
+    if assessed.verdict == "rejected":
+        return None
     wording = assessed.profile.statement(component, language)
     by_id = {each.requirement.id: each for each in assessed.findings}
     if wording is None or not all(name in by_id for name in wording.rests_on):

@@ -103,7 +103,7 @@ def evidence(results: Results, orientation: str, product: Product) -> Evidence:
     orientation
         One of `ORIENTATIONS`.
     product
-        Its accuracy of the survey stands in where the block states none.
+        Its accuracy of the survey counts where the block states none, or a smaller one.
 
     Raises
     ------
@@ -145,12 +145,15 @@ def _columns(rows: Sequence[Row], names: Sequence[str]) -> _Floats:
 
 
 def _survey(rows: Sequence[Row], product: Product) -> tuple[_Floats, _Floats]:
-    """(n,) radial horizontal and vertical; sigma_xy is that of X and of Y."""
+    """(n,) radial horizontal and vertical; sigma_xy is that of X and of Y.
+
+    Where both block and product state one, the larger counts: neither may flatter the product.
+    """
     stated = _columns(rows, ("survey_sigma_xy_m", "survey_sigma_z_m"))
     horizontal, vertical = np.sqrt(2.0) * stated[:, 0], stated[:, 1]
     return (
-        np.where(np.isnan(horizontal), _number(product.survey_sigma_h_m), horizontal),
-        np.where(np.isnan(vertical), _number(product.survey_sigma_v_m), vertical),
+        np.fmax(horizontal, _number(product.survey_sigma_h_m)),
+        np.fmax(vertical, _number(product.survey_sigma_v_m)),
     )
 
 

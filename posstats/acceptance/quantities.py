@@ -15,7 +15,7 @@ from posstats.acceptance.published import (
     nssda_accuracy_v,
 )
 from posstats.acceptance.reasons import Reason, Unavailable
-from posstats.acceptance.rmse import RmseInterval, rmse_interval
+from posstats.acceptance.rmse import MIN_POINTS, RmseInterval, rmse_interval
 
 _Floats = NDArray[np.float64]
 
@@ -27,12 +27,17 @@ COMPONENTS: Mapping[str, tuple[int, ...]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity as it was found, with its 95 % interval where one is known; NaN where not."""
+    """A quantity as it was found, with its 95 % interval where one is known; NaN where not.
+
+    Of an RMSE that holds the accuracy of the survey, `survey_m` is that accuracy: more check
+    points make it no better.
+    """
 
     value: float
     low: float = float("nan")
     high: float = float("nan")
     df_per_point: float | None = None
+    survey_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -80,8 +85,17 @@ class Question:
 
 
 def rmse(question: Question, component: str) -> RmseInterval:
-    """Root mean square error of a component, mean shift kept, with its 95 % interval."""
-    return rmse_interval(question.differences(component))
+    """Root mean square error of a component, mean shift kept, with its 95 % interval.
+
+    Raises
+    ------
+    Unavailable
+        With fewer check points than an interval takes: such a value says nothing.
+    """
+    differences = question.differences(component)
+    if len(differences) < MIN_POINTS:
+        raise Unavailable(Reason("too few points", {"n": len(differences), "needed": MIN_POINTS}))
+    return rmse_interval(differences)
 
 
 def _rmse(component: str) -> Callable[[Question], Found]:
@@ -97,7 +111,7 @@ def _found(interval: RmseInterval, survey_m: float = 0.0) -> Found:
     value, low, high = (
         float("nan") if each is None else asprs_product_accuracy(each, survey_m) for each in values
     )
-    return Found(value, low, high, interval.df_per_point)
+    return Found(value, low, high, interval.df_per_point, survey_m)
 
 
 def _product_rmse(component: str) -> Callable[[Question], Found]:

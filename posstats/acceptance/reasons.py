@@ -12,7 +12,8 @@ Value = float | int | str | None
 class Reason:
     """A reason by its code.
 
-    `within`, `exceeds`, `investigate` (found, limit); `no check points`; `survey accuracy not
+    `within`, `exceeds`, `investigate` (found, limit); `no check points`; `too few points` (n,
+    needed); `survey accuracy not
     stated`; `product value missing` (name); `quantity not available` (quantity, orientation);
     `nssda ratio` (ratio). Of an orientation: its name, or `asked`.
     """
