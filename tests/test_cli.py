@@ -179,6 +179,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
         )
         while not list(tmp_path.glob(".posstats-*")) and process.poll() is None:
             time.sleep(0.01)
+        time.sleep(0.2)  # the folder is there: let the command know of it too
         process.send_signal(number)
         _, message = process.communicate(timeout=60)
         assert process.returncode not in (0, None)
