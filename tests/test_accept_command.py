@@ -10,10 +10,14 @@ from archive_conformance import problems
 from click.testing import CliRunner
 from small_scenario import small_block
 
+from posstats.acceptance.assessment import ChosenStatement
 from posstats.block_io import write_block
 from posstats.reports.accept_command import length_m
+from posstats.reports.acceptance_data import _filled
+from posstats.reports.acceptance_units import Lengths, margin
 from posstats.reports.cjk import faces
 from posstats.reports.cli import cli
+from posstats.reports.format import METRE, MINUS
 
 CONTRACT = """
 extends = "asprs-2024"
@@ -262,6 +266,34 @@ def test_a_file_that_holds_no_results_is_named(tmp_path, content, message):
     )
     assert done.exit_code == 1
     assert message in done.output
+
+
+@pytest.mark.parametrize("value", ["a", [1], {}])
+def test_a_value_that_is_no_number_is_refused_without_a_traceback(analysed, tmp_path, value):
+    values = json.loads(analysed.read_text(encoding="utf-8"))
+    for row in values["check_point_residuals"]:
+        row["dx_m"] = value
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(values), encoding="utf-8")
+    done = run("accept", path, "--profile", "jrc", "--gsd", "1m", "--out", tmp_path / "out")
+    assert done.exit_code == 1
+    assert "does not hold values as posstats analyse writes them" in done.output
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("share", [1e-4, 1e-6, 1e-8])
+def test_printed_digits_never_contradict_a_narrow_verdict(share):
+    class_m = 1.0388
+    chosen = ChosenStatement(
+        "horizontal", "tested", "{class_cm} {found_cm}", class_m, class_m * (1.0 - share), 40
+    )
+    class_cm, found_cm = map(float, _filled(chosen).rstrip(".").split())
+    assert found_cm <= class_cm
+    row = {"quantity": "rmse_h", "unit": "m", "found": class_m * (1.0 + share), "limit": class_m,
+           "margin": -share * class_m}  # fmt: skip
+    shown = margin(row, Lengths(METRE, 3))
+    assert shown.startswith(MINUS) or share < 1e-7
+    assert shown != "0.000\u00a0m" or share < 1e-7
 
 
 def test_a_place_that_does_not_exist_is_named(tmp_path):
