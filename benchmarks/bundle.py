@@ -24,9 +24,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, be
 import numpy as np
 
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.bundle import adjust
-from posstats.bundle.parameters import BLOCK, IMU_DRIFTS, IMU_SHIFTS, drift_parameters
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import BLOCK, IMU_DRIFTS, IMU_SHIFTS, drift_parameters
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.synthetic import load_scenario, simulate
 
 try:

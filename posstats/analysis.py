@@ -21,10 +21,10 @@ from posstats.block import Block, Orientations
 from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
 from posstats.imu_free_bundle import ImuFreeBundle, adjust_imu_free
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.parallax import model_rms_px
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.relative_orientation import Method, RelativeOrientation, orient
-from posstats.rotation import ANGLE_NAMES
 from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
 from posstats.stereo import StereoModels, stereo_models
 from posstats.validation import out_of_sample_parallax

@@ -19,19 +19,19 @@ from posstats.coplanarity_adjustment import Priors, adjust
 from posstats.coplanarity_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.errors import GeometryError
 from posstats.imu_free_bundle import ImuFreeBundle
+from posstats.numerics.kernels.rotation import (
+    rotation_derivatives,
+    rotation_from_angles,
+    skew,
+    vector_from_rotation,
+    wrapped,
+)
 from posstats.observability import (
     UNDETERMINED_SHARE,
     EstimatedAngles,
     Observability,
     observability,
     weak_prior_rad,
-)
-from posstats.rotation import (
-    rotation_derivatives,
-    rotation_from_angles,
-    skew,
-    vector_from_rotation,
-    wrapped,
 )
 from posstats.stereo import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 

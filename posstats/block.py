@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from posstats.camera import Camera
 from posstats.frames import GroundFrame
-from posstats.rotation import AngleSystem, rotation_from_angles
+from posstats.numerics.kernels.rotation import AngleSystem, rotation_from_angles
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

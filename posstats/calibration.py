@@ -19,9 +19,6 @@ from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
 from posstats.block import Block, Orientations
-from posstats.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
-from posstats.bundle.pos_observations import antenna_positions, imu_angles
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.correction import corrected
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.checked_table import (
@@ -35,7 +32,10 @@ from posstats.formats.checked_table import (
     whole,
 )
 from posstats.formats.tables import sha256
-from posstats.rotation import rotation_from_angles, vector_from_rotation
+from posstats.numerics.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
+from posstats.numerics.bundle.pos_observations import antenna_positions, imu_angles
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation
 
 _Floats = NDArray[np.float64]
 

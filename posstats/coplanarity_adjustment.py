@@ -15,7 +15,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity import base_frames
 from posstats.coplanarity_linearised import linearised
 from posstats.coplanarity_normals import (
     Observed,
@@ -26,8 +25,9 @@ from posstats.coplanarity_normals import (
 )
 from posstats.coplanarity_pairs import PointPairs
 from posstats.errors import ConvergenceError, GeometryError
-from posstats.least_squares import Propagation, factorised, mirrored, propagated
-from posstats.rotation import AngleSystem
+from posstats.numerics.kernels.coplanarity import base_frames
+from posstats.numerics.kernels.rotation import AngleSystem
+from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -10,11 +10,15 @@ opposes it in a direction without parallax, such as the tilt of the block, are o
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import kernel
-from posstats.coplanarity import y_parallax_derivatives
 from posstats.coplanarity_normals import Observed
 from posstats.coplanarity_pairs import PointPairs
-from posstats.rotation import AngleSystem, rotation_derivatives, rotation_from_angles
+from posstats.numerics.kernels.compiled import kernel
+from posstats.numerics.kernels.coplanarity import y_parallax_derivatives
+from posstats.numerics.kernels.rotation import (
+    AngleSystem,
+    rotation_derivatives,
+    rotation_from_angles,
+)
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

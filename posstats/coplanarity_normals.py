@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
-from posstats.kernel_algebra import Six, add_products, six
+from posstats.numerics.kernels.algebra import Six, add_products, six
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

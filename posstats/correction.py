@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Orientations
-from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit
-from posstats.rotation import (
+from posstats.numerics.kernels.rotation import (
     ANGLE_NAMES,
     CAMERA_ANGLE_NAMES,
     angles_from_rotation,
     rotation_from_vector,
 )
+from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit
 from posstats.selection import Decision, chosen_fits
 
 _Floats = NDArray[np.float64]

@@ -25,12 +25,12 @@ from posstats.adjustment.screening import (
 )
 from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
 from posstats.block import Block, Orientations
-from posstats.block_tridiagonal import ArrowFactor, factorised
-from posstats.bundle import adjust
-from posstats.bundle.pos_observations import angles_by_rotation_vector
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.bundle.system import BundleSystem, State
 from posstats.errors import GeometryError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle.system import BundleSystem, State
+from posstats.numerics.solvers.arrow import ArrowFactor, factorised
 from posstats.observability import weak_prior_rad
 
 _Floats = NDArray[np.float64]

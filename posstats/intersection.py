@@ -7,13 +7,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from posstats.block import Accuracy, Orientations, TiePoints
 from posstats.camera import Camera
-from posstats.collinearity import (
+from posstats.numerics.kernels.collinearity import (
     INTERSECTED,
     intersect_rays,
     intersection_precision,
     project_derivatives,
 )
-from posstats.rotation import rotation_derivatives
+from posstats.numerics.kernels.rotation import rotation_derivatives
 from posstats.stereo import image_vectors
 
 _Floats = NDArray[np.float64]

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
-from posstats.kernel_algebra import solve_normals, sum_of_products
+from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 from posstats.pair_equations import (
     Pair,
     normal_equations,

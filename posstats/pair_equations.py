@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel
-from posstats.coplanarity import parallax, parallax_gradients
-from posstats.kernel_algebra import Matrix, Vector, cross, dot, rotated, sum_of_products
+from posstats.numerics.kernels.algebra import Matrix, Vector, cross, dot, rotated, sum_of_products
+from posstats.numerics.kernels.compiled import inner_kernel
+from posstats.numerics.kernels.coplanarity import parallax, parallax_gradients
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -15,7 +15,7 @@ from posstats.drift import (
     fit_constant,
     fit_drift,
 )
-from posstats.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
+from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 
 if TYPE_CHECKING:
     from posstats.angle_errors import AngleErrors

@@ -15,11 +15,15 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity import base_frames
 from posstats.errors import GeometryError
+from posstats.numerics.kernels.coplanarity import base_frames
+from posstats.numerics.kernels.rotation import (
+    AngleSystem,
+    angles_from_rotation,
+    rotation_from_angles,
+)
 from posstats.pair_adjustment import CONVERGED, NOT_CONVERGED, RANK_DEFICIENT, adjust_pairs
 from posstats.pair_blunders import weigh_pairs
-from posstats.rotation import AngleSystem, angles_from_rotation, rotation_from_angles
 from posstats.stereo import MIN_MODEL_POINTS, StereoModels
 
 _Floats = NDArray[np.float64]

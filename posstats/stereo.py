@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations, TiePoints
 from posstats.camera import Camera
-from posstats.coplanarity import base_frames, y_parallax
+from posstats.numerics.kernels.coplanarity import base_frames, y_parallax
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

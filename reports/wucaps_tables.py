@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from posstats.bundle.parameters import BORESIGHT
+from posstats.numerics.bundle.parameters import BORESIGHT
 from posstats.synthetic import Scenario
 from posstats.wucaps.adjustments import CONTROLS
 from posstats.wucaps.experiment import Row, SituationRun

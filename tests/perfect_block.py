@@ -9,7 +9,7 @@ from posstats.block import Accuracy, Block, GroundPoints, Orientations, TiePoint
 from posstats.block_io import write_block
 from posstats.camera import Camera, Distortion
 from posstats.frames import GroundFrame
-from posstats.rotation import rotation_from_angles
+from posstats.numerics.kernels.rotation import rotation_from_angles
 from posstats.stereo import stereo_models
 
 SCALE_NUMBER = 78_000

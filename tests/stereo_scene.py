@@ -3,7 +3,7 @@
 import numpy as np
 
 from posstats.block import Orientations
-from posstats.rotation import angles_from_rotation, rotation_from_angles
+from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_angles
 from posstats.stereo import ImagePairs, StereoModels
 
 PRINCIPAL_DISTANCE_PX = np.array([10000.0, 8000.0])  # of two cameras

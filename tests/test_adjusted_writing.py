@@ -5,7 +5,7 @@ import pytest
 
 from posstats.formats.convention import Convention
 from posstats.frames import GroundFrame
-from posstats.rotation import rotation_from_angles, rotation_from_vector
+from posstats.numerics.kernels.rotation import rotation_from_angles, rotation_from_vector
 
 
 @pytest.mark.parametrize("angles", ["omega-phi-kappa", "phi-omega-kappa", "roll-pitch-heading"])

@@ -19,9 +19,9 @@ from posstats.adjustment.snooping import Blunder
 from posstats.block_io import write_block
 from posstats.errors import PosstatsError
 from posstats.intersection import intersect
+from posstats.numerics.kernels.rotation import wrapped
 from posstats.plain_values import to_json
 from posstats.reports.adjustment_verdict import paragraph
-from posstats.rotation import wrapped
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
 GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
@@ -129,7 +129,7 @@ def test_covariance_of_a_check_point_by_perturbing_all_that_it_depends_on(corner
 
 def _covariance_of_elements(adjustment: Adjustment, images) -> np.ndarray:
     """Joint covariance of omega, phi, kappa, X, Y, Z of images of neighbouring levels."""
-    from posstats.bundle.pos_observations import angles_by_rotation_vector
+    from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 
     n, adjusted = len(images), adjustment.adjusted
     by_pose = np.tile(np.eye(6), (n, 1, 1))

@@ -13,13 +13,13 @@ from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera
 from posstats.block import Block, GroundPoints
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
-from posstats.regression import fit_drift
-from posstats.rotation import (
+from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,
     vector_from_rotation,
     wrapped,
 )
+from posstats.regression import fit_drift
 from posstats.stereo import stereo_models
 
 SIDE_OVERLAP = Layout()

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from posstats.block_tridiagonal import ArrowMatrix, factorised
 from posstats.errors import UndeterminedError
-from posstats.image_levels import breadth_first_levels
+from posstats.numerics.solvers.arrow import ArrowMatrix, factorised
+from posstats.numerics.solvers.levels import breadth_first_levels
 
 
 def arrow(pairs, n_images, n_common, seed, b=6):

@@ -15,7 +15,7 @@ from posstats.camera import Distortion
 from posstats.errors import GeometryError
 from posstats.formats.convention import Convention
 from posstats.frames import GroundFrame
-from posstats.rotation import rotation_from_vector, vector_from_rotation
+from posstats.numerics.kernels.rotation import rotation_from_vector, vector_from_rotation
 
 BROWN = Distortion("brown", -0.05, 0.02, -0.003, 4e-4, -3e-4)
 

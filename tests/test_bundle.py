@@ -10,8 +10,9 @@ from small_blocks import CAMERA, Layout, observed_block, true_block
 
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.block import GroundPoints
-from posstats.bundle import adjust
-from posstats.bundle.parameters import (
+from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -21,14 +22,9 @@ from posstats.bundle.parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.bundle.problem import Control
-from posstats.bundle.system import BundleSystem
-from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
-from posstats.rotation import (
-    rotation_from_vector,
-    vector_from_rotation,
-    wrapped,
-)
+from posstats.numerics.bundle.problem import Control
+from posstats.numerics.bundle.system import BundleSystem
+from posstats.numerics.kernels.rotation import rotation_from_vector, vector_from_rotation, wrapped
 
 C, MM = CAMERA.principal_distance_px, CAMERA.pixel_size_mm
 PARAMETERS = (
@@ -350,7 +346,7 @@ def test_progress_is_told_and_an_iteration_that_does_not_settle_is_refused(monke
     told = []
     adjust(problem, progress=lambda *step: told.append(step))
     assert [step[0] for step in told] == list(range(1, len(told) + 1))
-    monkeypatch.setattr("posstats.bundle.gauss_newton.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("posstats.numerics.bundle.gauss_newton.MAX_ITERATIONS", 1)
     with pytest.raises(ConvergenceError, match="did not settle in 1 step"):
         adjust(problem)
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from posstats.adjustment.check_points import ideal_xy
-from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras
 from posstats.camera import Camera, Distortion
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras
 
 
 def cameras(**values: float) -> Cameras:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from posstats.rotation import wrapped
+from posstats.numerics.kernels.rotation import wrapped
 
 BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "bundle_coverage.py"
 N_BLOCKS = 16

@@ -8,8 +8,9 @@ from dense_bundle import noisy_problem
 
 from posstats.adjustment.defects import defects, weak_parameters
 from posstats.adjustment.significance import parameter_tests
-from posstats.bundle import adjust
-from posstats.bundle.parameters import (
+from posstats.errors import UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -19,8 +20,7 @@ from posstats.bundle.parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.bundle.rays import CAMERA_PARAMETERS
-from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 
 STRIPS, BLOCK = ("s0", "s1"), ("block",)
 GNSS, IMU = "sigma_antenna_m", "sigma_angles_rad"

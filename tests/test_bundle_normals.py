@@ -5,12 +5,12 @@ from itertools import pairwise
 import numpy as np
 from strip_scene import CAMERA, measurements, scene
 
-from posstats.bundle.ground_points import move_points, ray_residuals
-from posstats.bundle.normals import Reduced, accumulate
-from posstats.bundle.point_groups import grouped
-from posstats.bundle.point_normals import Ground, Measured, Network
-from posstats.bundle.precision import Cofactors, PointPrecision, point_precision
-from posstats.bundle.rays import Cameras, Images, project_rays
+from posstats.numerics.bundle.ground_points import move_points, ray_residuals
+from posstats.numerics.bundle.normals import Reduced, accumulate
+from posstats.numerics.bundle.point_groups import grouped
+from posstats.numerics.bundle.point_normals import Ground, Measured, Network
+from posstats.numerics.bundle.precision import Cofactors, PointPrecision, point_precision
+from posstats.numerics.bundle.rays import Cameras, Images, project_rays
 
 USED = [0, 3, 6, 10]  # camera_c, bauer_s1, brown_k1, brown_p2 of two cameras, c in common
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from posstats.bundle.parameters import (
+from posstats.errors import GeometryError
+from posstats.numerics.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -15,9 +16,12 @@ from posstats.bundle.parameters import (
     drift_parameters,
     parameter_effects,
 )
-from posstats.bundle.pos_observations import PosObservations, linearised_pos
-from posstats.errors import GeometryError
-from posstats.rotation import axis_rotation, rotation_from_angles, rotation_from_vector
+from posstats.numerics.bundle.pos_observations import PosObservations, linearised_pos
+from posstats.numerics.kernels.rotation import (
+    axis_rotation,
+    rotation_from_angles,
+    rotation_from_vector,
+)
 
 N = 6
 EXPOSURES = Exposures(

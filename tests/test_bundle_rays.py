@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from strip_scene import CAMERA, measurements, scene
 
-from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
 from posstats.camera import Camera, Distortion
-from posstats.rotation import rotation_from_vector
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
+from posstats.numerics.kernels.rotation import rotation_from_vector
 
 C = CAMERA.principal_distance_px
 VALUES = np.array([3.0, -2.0, 1.5, 2e-8, 3e-5, -2e-5, 0.02, -0.01, 0.004, 1e-3, -2e-3])

@@ -8,8 +8,9 @@ from dense_bundle import noisy_problem
 
 from posstats.adjustment.selection import select_parameters
 from posstats.adjustment.significance import parameter_tests
-from posstats.bundle import adjust
-from posstats.bundle.parameters import (
+from posstats.errors import UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import (
     GNSS_DRIFTS,
     GNSS_SHIFTS,
     IMU_DRIFTS,
@@ -17,7 +18,6 @@ from posstats.bundle.parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.errors import UndeterminedError
 
 FREE = drift_parameters((*GNSS_SHIFTS, *GNSS_DRIFTS, *IMU_SHIFTS, *IMU_DRIFTS), ("block",))
 EXTRA = tuple(CommonParameter(name) for name in ("camera_x0", "bauer_s2", "brown_k1"))

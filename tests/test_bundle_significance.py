@@ -17,8 +17,8 @@ from posstats.adjustment.significance import (
     parameter_tests,
 )
 from posstats.adjustment.weights import GROUPS, rescaled
-from posstats.bundle import adjust
-from posstats.bundle.parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
 
 SHIFTS = (
     *(CommonParameter(name) for name in GNSS_SHIFTS),

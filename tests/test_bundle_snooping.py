@@ -10,7 +10,7 @@ from small_scenario import small_block
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.snooping import snoop
-from posstats.bundle import adjust
+from posstats.numerics.bundle import adjust
 
 ERRORS = {
     "image_px": 0.2,

@@ -4,7 +4,7 @@ import numpy as np
 from dense_bundle import DenseBundle, noisy_problem
 
 from posstats.adjustment.weights import GROUPS, estimate_weights, rescaled, variance_factors
-from posstats.bundle import adjust
+from posstats.numerics.bundle import adjust
 
 STATED_WRONG = {"image": 4.0, "gnss": 0.25, "imu": 1.0, "control": 1.0}
 

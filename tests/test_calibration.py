@@ -16,7 +16,6 @@ from small_scenario import small_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.block_io import write_block
-from posstats.bundle import adjust
 from posstats.calibration import (
     Calibration,
     apply_calibration,
@@ -27,8 +26,9 @@ from posstats.calibration import (
     write_calibration,
 )
 from posstats.errors import BlockFormatError, PosstatsError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.kernels.rotation import wrapped
 from posstats.reports.cli import cli
-from posstats.rotation import wrapped
 from posstats.wucaps.adjustments import adjusted_block, control_points, pos_parameters
 
 ROLL_PITCH_YAW = np.array([-3e-3, 5e-3, 8e-3])

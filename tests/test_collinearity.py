@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from strip_scene import CAMERA, measurements, projected, scene
 
-from posstats.collinearity import project, project_derivatives
-from posstats.rotation import rotation_derivatives
+from posstats.numerics.kernels.collinearity import project, project_derivatives
+from posstats.numerics.kernels.rotation import rotation_derivatives
 
 SYSTEMS = ["omega-phi-kappa", "phi-omega-kappa"]
 

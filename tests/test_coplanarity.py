@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from stereo_scene import true_models, with_angle_errors, with_image_noise
 
-from posstats.coplanarity import base_frames, y_parallax, y_parallax_derivatives
-from posstats.rotation import rotation_derivatives, rotation_from_angles
+from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
+from posstats.numerics.kernels.rotation import rotation_derivatives, rotation_from_angles
 
 SYSTEMS = ("omega-phi-kappa", "phi-omega-kappa")
 

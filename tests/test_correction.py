@@ -8,8 +8,8 @@ import pytest
 from posstats.angle_errors import AngleErrors
 from posstats.block import Orientations
 from posstats.correction import corrected, predicted_errors
+from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.regression import regress
-from posstats.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.selection import decide, load_rules
 
 SYSTEMS = ["omega-phi-kappa", "phi-omega-kappa"]

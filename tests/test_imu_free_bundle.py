@@ -18,10 +18,10 @@ from posstats.block import Block
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.imu_free_bundle import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
+from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.reports import block_document, html
 from posstats.reports.cli import cli
 from posstats.results import results
-from posstats.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.stereo import stereo_models
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}

@@ -10,7 +10,7 @@ from strip_scene import CAMERA, measurements, orientations, projected, scene
 
 from posstats.block_io import read_block
 from posstats.intersection import intersect
-from posstats.rotation import angles_from_rotation
+from posstats.numerics.kernels.rotation import angles_from_rotation
 
 CAMERAS = (CAMERA,)
 

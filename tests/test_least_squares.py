@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from posstats.errors import GeometryError
-from posstats.least_squares import factorised, inverted, propagated
+from posstats.numerics.solvers.dense import factorised, inverted, propagated
 
 
 def system(seed=0):

@@ -12,7 +12,7 @@ from posstats.formats.navigation import (
     rotation_from_navigation,
 )
 from posstats.frames import GroundFrame
-from posstats.rotation import angles_from_rotation, vector_from_rotation, wrapped
+from posstats.numerics.kernels.rotation import angles_from_rotation, vector_from_rotation, wrapped
 
 
 def test_seneca_pos_converts_to_its_published_omega_phi_kappa() -> None:

@@ -20,8 +20,14 @@ from stereo_scene import (
 )
 
 from posstats.block_io import read_block
-from posstats.coplanarity import base_frames, y_parallax, y_parallax_derivatives
 from posstats.errors import GeometryError
+from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
+from posstats.numerics.kernels.rotation import (
+    angles_from_rotation,
+    rotation_from_angles,
+    vector_from_rotation,
+    wrapped,
+)
 from posstats.parallax import model_rms_px
 from posstats.relative_orientation import (
     DEPENDENT,
@@ -30,12 +36,6 @@ from posstats.relative_orientation import (
     check_solvable,
     orient,
     orient_elements,
-)
-from posstats.rotation import (
-    angles_from_rotation,
-    rotation_from_angles,
-    vector_from_rotation,
-    wrapped,
 )
 from posstats.stereo import stereo_models
 from posstats.synthetic import load_scenario, simulate

@@ -12,8 +12,8 @@ import pytest
 from small_scenario import small_block
 
 from posstats.adjustment.settings import DriftPriors
-from posstats.bundle.parameters import BORESIGHT
-from posstats.rotation import vector_from_rotation, wrapped
+from posstats.numerics.bundle.parameters import BORESIGHT
+from posstats.numerics.kernels.rotation import vector_from_rotation, wrapped
 from posstats.stereo import stereo_models
 from posstats.wucaps.adjustments import CONTROLS, adjusted_block, control_points, pos_parameters
 from posstats.wucaps.findings import CRITERIA, LESS, RECOMMENDED, SituationFindings

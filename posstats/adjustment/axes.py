@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle.problem import BundleProblem
+from posstats.numerics.bundle.problem import BundleProblem
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block
-from posstats.bundle.parameters import CommonParameter, Exposures
-from posstats.bundle.pos_observations import PosObservations
-from posstats.bundle.problem import BundleProblem, Control
-from posstats.collinearity import INTERSECTED, intersect_rays
 from posstats.errors import GeometryError
+from posstats.numerics.bundle.parameters import CommonParameter, Exposures
+from posstats.numerics.bundle.pos_observations import PosObservations
+from posstats.numerics.bundle.problem import BundleProblem, Control
+from posstats.numerics.kernels.collinearity import INTERSECTED, intersect_rays
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

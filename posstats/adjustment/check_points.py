@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import Block, Orientations, TiePoints
-from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle.parameters import ParameterEffects, parameter_effects
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
-from posstats.bundle.system import BundleSystem, State
 from posstats.errors import GeometryError
 from posstats.intersection import IntersectedPoints, intersect
+from posstats.numerics.bundle.parameters import ParameterEffects, parameter_effects
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
+from posstats.numerics.bundle.system import BundleSystem, State
+from posstats.numerics.solvers.arrow import SelectedInverse
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from posstats.adjustment.significance import ParameterTest
-from posstats.bundle.parameters import (
+from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.parameters import (
     BLOCK,
     BORESIGHT,
     GNSS_DRIFTS,
@@ -16,8 +17,7 @@ from posstats.bundle.parameters import (
     LEVER_ARM,
     CommonParameter,
 )
-from posstats.bundle.problem import BundleProblem
-from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.problem import BundleProblem
 
 _GNSS, _IMU = (*GNSS_SHIFTS, *GNSS_DRIFTS), (*IMU_SHIFTS, *IMU_DRIFTS)
 _RADIAL = ("camera_c", "bauer_s1", "brown_k1", "brown_k2", "brown_k3")

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.screening import contradicting_rays, without_rays
 from posstats.block import Block, Orientations
-from posstats.bundle import adjust
-from posstats.bundle.parameters import CommonParameter
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.formats.block_toml import RADIANS_PER_UNIT, AngleUnit, FileAngleSystem
 from posstats.formats.block_writing import source_of
 from posstats.formats.convention import Convention
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import CommonParameter
 
 _Bools = NDArray[np.bool_]
 _Floats = NDArray[np.float64]

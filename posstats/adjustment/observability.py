@@ -10,7 +10,8 @@ from scipy.sparse.csgraph import connected_components
 
 from posstats.adjustment.defects import defects, weak_parameters
 from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
-from posstats.bundle.parameters import (
+from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.parameters import (
     BORESIGHT,
     GNSS_DRIFTS,
     GNSS_SHIFTS,
@@ -18,8 +19,7 @@ from posstats.bundle.parameters import (
     IMU_SHIFTS,
     LEVER_ARM,
 )
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 _Floats = NDArray[np.float64]
 _Ids = NDArray[np.object_]

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from posstats.adjustment.significance import local_tests, parameter_tests
-from posstats.bundle import adjust
-from posstats.bundle.parameters import BLOCK, CommonParameter
-from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
 
 CONTRADICTED = 4.0
 """Standard deviations beyond which measurements contradict a prior."""

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
-from posstats.bundle import adjust
-from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

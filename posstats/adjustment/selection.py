@@ -4,16 +4,16 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from posstats.adjustment.significance import ParameterTest, parameter_tests
-from posstats.bundle import adjust
-from posstats.bundle.parameters import (
+from posstats.errors import UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import (
     GNSS_DRIFTS,
     GNSS_SHIFTS,
     IMU_DRIFTS,
     IMU_SHIFTS,
     CommonParameter,
 )
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.errors import UndeterminedError
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 Reason = Literal["singular", "not determined", "not significant"]
 _SHIFTS = (*GNSS_SHIFTS, *IMU_SHIFTS)

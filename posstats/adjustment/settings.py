@@ -7,7 +7,8 @@ import numpy as np
 
 from posstats.adjustment.control import NAMED_CHOICES, ControlChoice
 from posstats.block import Block
-from posstats.bundle.parameters import (
+from posstats.errors import PosstatsError
+from posstats.numerics.bundle.parameters import (
     BLOCK,
     BORESIGHT,
     GNSS_DRIFTS,
@@ -18,7 +19,6 @@ from posstats.bundle.parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.errors import PosstatsError
 
 DriftScope = Literal["none", "block", "strip"]
 SelfCalibration = Literal["none", "bauer", "brown"]

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from posstats.bundle.parameters import UNITS, CommonParameter, parameter_effects
-from posstats.bundle.pos_observations import angles_by_rotation_vector
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.bundle.rays import CAMERA_PARAMETERS
+from posstats.numerics.bundle.parameters import UNITS, CommonParameter, parameter_effects
+from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.significance import critical_value, local_tests
-from posstats.bundle import adjust
-from posstats.bundle.problem import AdjustedBundle, BundleProblem, Control
 from posstats.errors import ConvergenceError, UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

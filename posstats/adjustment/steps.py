@@ -48,9 +48,9 @@ from posstats.adjustment.significance import (
 from posstats.adjustment.snooping import Snooping, snoop
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
 from posstats.block import Block, GroundPoints, Orientations
-from posstats.bundle import adjust
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

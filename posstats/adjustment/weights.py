@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from posstats.bundle import adjust
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 GROUPS = ("image", "gnss", "imu", "control")
 LEAST_REDUNDANCY = 10.0

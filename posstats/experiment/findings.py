@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from posstats.experiment.areas import TrueCauses
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.parallax import NOTICEABLE
-from posstats.rotation import ANGLE_NAMES
 from posstats.synthetic import Scenario
 
 Results = Mapping[str, Any]

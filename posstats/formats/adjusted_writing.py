@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from posstats.block import Block, Orientations
 from posstats.formats.block_writing import POSITION_DECIMALS, source_of
 from posstats.formats.convention import Convention
-from posstats.rotation import wrapped
+from posstats.numerics.kernels.rotation import wrapped
 
 _Floats = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from posstats.formats.block_toml import (
 from posstats.formats.convention import Convention
 from posstats.formats.toml_section import FILE
 from posstats.frames import GroundFrame
-from posstats.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
+from posstats.numerics.kernels.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
 
 _Floats = NDArray[np.float64]
 

@@ -24,7 +24,7 @@ from posstats.formats.navigation import (
     rotation_from_navigation,
 )
 from posstats.frames import GroundFrame
-from posstats.rotation import (
+from posstats.numerics.kernels.rotation import (
     AngleSystem,
     angles_from_rotation,
     axis_rotation,

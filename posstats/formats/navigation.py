@@ -13,7 +13,7 @@ top points forward, or `mounting_rad` clockwise from forward, seen from above.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from posstats.rotation import axis_rotation
+from posstats.numerics.kernels.rotation import axis_rotation
 
 _Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.rotation import rotation_from_angles
+from posstats.numerics.kernels.rotation import rotation_from_angles
 from posstats.synthetic.scenario import Scenario
 
 _Floats = NDArray[np.float64]

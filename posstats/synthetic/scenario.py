@@ -24,7 +24,7 @@ from posstats.formats.checked_table import (
     text,
     whole,
 )
-from posstats.rotation import AngleSystem
+from posstats.numerics.kernels.rotation import AngleSystem
 
 _MAX_IMAGES = 100_000
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from posstats.block import Accuracy, Block, GroundPoints, Orientations
 from posstats.formats.block_warnings import block_warnings
 from posstats.frames import GroundFrame, require_map_grid
-from posstats.rotation import (
+from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,
     rotation_from_vector,

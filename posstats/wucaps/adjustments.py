@@ -17,9 +17,9 @@ from posstats.adjustment.control import chosen_control
 from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.adjustment.significance import parameter_tests
 from posstats.block import Block, GroundPoints, Orientations
-from posstats.bundle import adjust
-from posstats.bundle.parameters import BORESIGHT, CommonParameter
-from posstats.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.numerics.bundle import adjust
+from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 _Bools = NDArray[np.bool_]
 

@@ -10,7 +10,7 @@ from posstats.analysis import Analysis, Settings, analyse
 from posstats.block import Block, Orientations
 from posstats.calibration import Calibration, apply_calibration, calibration_of
 from posstats.errors import UndeterminedError
-from posstats.rotation import ANGLE_NAMES
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.selection import Decision
 from posstats.stereo import StereoModels, stereo_models
 from posstats.wucaps.adjustments import (

@@ -12,8 +12,8 @@ from posstats.accuracy import (
 )
 from posstats.block import Block, Orientations
 from posstats.errors import PosstatsError
+from posstats.numerics.kernels.rotation import wrapped
 from posstats.parallax import block_statistics, model_rms_px
-from posstats.rotation import wrapped
 from posstats.stereo import StereoModels
 
 _Floats = NDArray[np.float64]

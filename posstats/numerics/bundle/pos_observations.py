@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle.parameters import ParameterEffects
-from posstats.rotation import (
+from posstats.numerics.bundle.parameters import ParameterEffects
+from posstats.numerics.kernels.rotation import (
     AngleSystem,
     angles_from_rotation,
     rotation_derivatives,

@@ -17,8 +17,8 @@ term by term; the linearised equation (1) of the first source paper holds to a f
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
-from posstats.kernel_algebra import Vector, dot, rotated
+from posstats.numerics.kernels.algebra import Vector, dot, rotated
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

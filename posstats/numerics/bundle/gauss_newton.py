@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
-from posstats.bundle.system import BundleSystem, Equations, State
 from posstats.errors import ConvergenceError, GeometryError
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
+from posstats.numerics.bundle.system import BundleSystem, Equations, State
+from posstats.numerics.solvers.arrow import SelectedInverse
 
 _Floats = NDArray[np.float64]
 

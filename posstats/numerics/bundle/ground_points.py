@@ -7,8 +7,8 @@ unknowns.
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle.point_groups import PointGroups
-from posstats.bundle.point_normals import (
+from posstats.numerics.bundle.point_groups import PointGroups
+from posstats.numerics.bundle.point_normals import (
     Ground,
     Measured,
     Network,
@@ -19,8 +19,8 @@ from posstats.bundle.point_normals import (
     solve_lower,
     solve_upper,
 )
-from posstats.bundle.rays import Cameras, Images, Ray, new_ray
-from posstats.compiled import inlined_kernel, kernel
+from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
+from posstats.numerics.kernels.compiled import inlined_kernel, kernel
 
 _Floats = NDArray[np.float64]
 

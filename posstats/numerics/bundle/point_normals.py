@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle.point_groups import PointGroups
-from posstats.bundle.rays import Cameras, Images, Ray, observe
-from posstats.compiled import inlined_kernel
+from posstats.numerics.bundle.point_groups import PointGroups
+from posstats.numerics.bundle.rays import Cameras, Images, Ray, observe
+from posstats.numerics.kernels.compiled import inlined_kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block_tridiagonal import SelectedInverse
-from posstats.bundle.parameters import CommonParameter, Exposures
-from posstats.bundle.pos_observations import PosObservations, angles_by_rotation_vector
-from posstats.rotation import AngleSystem, angles_from_rotation
+from posstats.numerics.bundle.parameters import CommonParameter, Exposures
+from posstats.numerics.bundle.pos_observations import PosObservations, angles_by_rotation_vector
+from posstats.numerics.kernels.rotation import AngleSystem, angles_from_rotation
+from posstats.numerics.solvers.arrow import SelectedInverse
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

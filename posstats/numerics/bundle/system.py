@@ -8,18 +8,18 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block_tridiagonal import ArrowMatrix, SelectedInverse, factorised
-from posstats.bundle.ground_points import intersect_points, move_points, ray_residuals
-from posstats.bundle.normals import Reduced, accumulate
-from posstats.bundle.parameters import ParameterEffects, parameter_effects
-from posstats.bundle.point_groups import GroupedRays, grouped
-from posstats.bundle.point_normals import Ground, Measured, Network
-from posstats.bundle.pos_observations import LinearisedPos, linearised_pos
-from posstats.bundle.precision import Cofactors, PointPrecision, point_precision
-from posstats.bundle.problem import BundleProblem
-from posstats.bundle.rays import CAMERA_PARAMETERS, Cameras, Images
-from posstats.image_levels import Levels, breadth_first_levels
-from posstats.rotation import rotation_from_vector
+from posstats.numerics.bundle.ground_points import intersect_points, move_points, ray_residuals
+from posstats.numerics.bundle.normals import Reduced, accumulate
+from posstats.numerics.bundle.parameters import ParameterEffects, parameter_effects
+from posstats.numerics.bundle.point_groups import GroupedRays, grouped
+from posstats.numerics.bundle.point_normals import Ground, Measured, Network
+from posstats.numerics.bundle.pos_observations import LinearisedPos, linearised_pos
+from posstats.numerics.bundle.precision import Cofactors, PointPrecision, point_precision
+from posstats.numerics.bundle.problem import BundleProblem
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images
+from posstats.numerics.kernels.rotation import rotation_from_vector
+from posstats.numerics.solvers.arrow import ArrowMatrix, SelectedInverse, factorised
+from posstats.numerics.solvers.levels import Levels, breadth_first_levels
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

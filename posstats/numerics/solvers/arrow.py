@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from posstats.errors import UndeterminedError
-from posstats.image_levels import Levels
+from posstats.numerics.solvers.levels import Levels
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, summing_kernel
+from posstats.numerics.kernels.compiled import inner_kernel, summing_kernel
 
 _Floats = NDArray[np.float64]
 Vector = Any  # three numbers: a row of an array, or a tuple

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inlined_kernel, kernel
-from posstats.kernel_algebra import cross
+from posstats.numerics.kernels.algebra import cross
+from posstats.numerics.kernels.compiled import inlined_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

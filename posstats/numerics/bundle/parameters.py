@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.bundle.rays import CAMERA_PARAMETERS
 from posstats.errors import GeometryError
+from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -11,7 +11,7 @@ the collinearity equations (equation 1 of the second source paper). Arrays only,
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.compiled import inner_kernel, kernel
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

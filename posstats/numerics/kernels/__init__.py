@@ -1,0 +1,1 @@
+"""Compiled kernels: rotations, collinearity, coplanarity; arrays in, arrays out."""

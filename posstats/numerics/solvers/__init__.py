@@ -1,0 +1,1 @@
+"""Least-squares solvers: dense, and block-sparse with selected inverse."""
