@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from posstats.acceptance.percentiles import ce_normal, le_normal, percentile_error
-from posstats.acceptance.rmse import rmse_interval
+from posstats.statistics.percentiles import ce_normal, le_normal, percentile_error
+from posstats.statistics.rmse import rmse_interval
 
 _Floats = NDArray[np.float64]
 

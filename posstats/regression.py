@@ -8,14 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block import BLOCK_SCOPE
-from posstats.drift import (
-    ConstantFit,
-    DriftFit,
-    FitError,
-    fit_constant,
-    fit_drift,
-)
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
+from posstats.statistics.drift import ConstantFit, DriftFit, FitError, fit_constant, fit_drift
 
 if TYPE_CHECKING:
     from posstats.angle_errors import AngleErrors

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from posstats.accuracy import CheckPointResiduals, check_point_accuracy
 from posstats.analysis import Analysis, FrameAnalysis
 from posstats.block import Block
-from posstats.drift import DriftFit
 from posstats.footprints import footprints
 from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.parallax import strip_statistics
 from posstats.regression import AngleRegression
+from posstats.statistics.drift import DriftFit
 
 _Floats = NDArray[np.float64]
 Row = dict[str, Any]

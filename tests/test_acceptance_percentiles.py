@@ -6,15 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import integrate, stats
 
-from posstats.acceptance import percentiles
-from posstats.acceptance.percentiles import (
+from posstats.statistics import percentiles
+from posstats.statistics.percentiles import (
     ce_normal,
     le_normal,
     n_for_upper_limit,
     percentile_error,
     sample_percentile,
 )
-from posstats.acceptance.samples import SampleError
+from posstats.statistics.samples import SampleError
 
 sizes = st.lists(st.floats(0.0, 1e6), min_size=2, max_size=30)
 

@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from posstats.acceptance.percentiles import ce_normal, le_normal
 from posstats.acceptance.published import (
     GBT_SAMPLE_SIZES,
     asprs_product_accuracy,
@@ -17,8 +16,9 @@ from posstats.acceptance.published import (
     nssda_accuracy_h,
     nssda_accuracy_v,
 )
-from posstats.acceptance.samples import SampleError
 from posstats.errors import PosstatsError
+from posstats.statistics.percentiles import ce_normal, le_normal
+from posstats.statistics.samples import SampleError
 
 
 @pytest.mark.parametrize(

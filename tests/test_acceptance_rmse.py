@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy import stats
 
-from posstats.acceptance.rmse import MAX_POINTS, n_to_decide, rmse_interval
-from posstats.acceptance.samples import SampleError
 from posstats.errors import PosstatsError
+from posstats.statistics.rmse import MAX_POINTS, n_to_decide, rmse_interval
+from posstats.statistics.samples import SampleError
 
 lengths = st.floats(-1e3, 1e3).map(lambda value: round(value, 4))
 differences = hnp.arrays(float, st.tuples(st.integers(3, 12), st.integers(1, 3)), elements=lengths)

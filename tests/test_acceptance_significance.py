@@ -8,10 +8,10 @@ from hypothesis.extra import numpy as hnp
 from scipy import stats
 from statsmodels.stats.multivariate import test_mvmean as mvmean
 
-from posstats.acceptance.mean_shift import component_shifts, mean_shift
-from posstats.acceptance.normality import normality
-from posstats.acceptance.outliers import largest_residuals
-from posstats.acceptance.samples import SampleError
+from posstats.statistics.mean_shift import component_shifts, mean_shift
+from posstats.statistics.normality import normality
+from posstats.statistics.outliers import largest_residuals
+from posstats.statistics.samples import SampleError
 
 N_TRIALS = 4000
 

@@ -11,8 +11,8 @@ import statsmodels.api as sm
 from helpers import shared_path
 from scipy import stats
 
-from posstats.drift import FitError, fit_constant, fit_drift, time_clusters
 from posstats.errors import PosstatsError
+from posstats.statistics.drift import FitError, fit_constant, fit_drift, time_clusters
 
 
 def noisy_line(n=60, slope=4.68e-7, sigma=1e-5, seed=1):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from posstats.drift import fit_drift
+from posstats.statistics.drift import fit_drift
 
 BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "interval_coverage.py"
 N_TRIALS = 400

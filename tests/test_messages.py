@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from posstats.acceptance import samples
 from posstats.acceptance.evidence import ORIENTATIONS
 from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.errors import PosstatsError
 from posstats.reports import acceptance_words
 from posstats.reports.messages import MissingMessageError, catalogue
+from posstats.statistics import samples
 
 ROOT = Path(__file__).resolve().parents[1]
 ENGLISH, CHINESE = catalogue("en"), catalogue("zh")

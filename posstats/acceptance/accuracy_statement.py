@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.acceptance.evidence import Evidence
-from posstats.acceptance.mean_shift import (
+from posstats.acceptance.quantities import COMPONENTS
+from posstats.statistics.mean_shift import (
     ComponentShift,
     MeanShiftTest,
     component_shifts,
     mean_shift,
 )
-from posstats.acceptance.normality import NormalityTest, normality
-from posstats.acceptance.outliers import LargestResidual, largest_residuals
-from posstats.acceptance.percentiles import Percentile, ce_normal, le_normal, percentile_error
-from posstats.acceptance.quantities import COMPONENTS
-from posstats.acceptance.rmse import RmseInterval, rmse_interval
+from posstats.statistics.normality import NormalityTest, normality
+from posstats.statistics.outliers import LargestResidual, largest_residuals
+from posstats.statistics.percentiles import Percentile, ce_normal, le_normal, percentile_error
+from posstats.statistics.rmse import RmseInterval, rmse_interval
 
 _Floats = NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from posstats.acceptance.profile import Component, Profile, Requirement
 from posstats.acceptance.published import gbt_grade, gbt_score
 from posstats.acceptance.quantities import Found, Question, find
 from posstats.acceptance.reasons import Reason, Unavailable
-from posstats.acceptance.rmse import n_to_decide
 from posstats.errors import PosstatsError
+from posstats.statistics.rmse import n_to_decide
 
 Judgement = Literal["pass", "fail", "not assessed"]
 Verdict = Literal["accepted", "rejected", "not assessable"]

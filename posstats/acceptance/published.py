@@ -7,7 +7,7 @@ NSSDA, FGDC-STD-007.3-1998; GB/T 24356-2023.
 import math
 from dataclasses import dataclass
 
-from posstats.acceptance.samples import SampleError
+from posstats.statistics.samples import SampleError
 
 NSSDA_EQUAL_FACTOR = 1.7308
 NSSDA_UNEQUAL_FACTOR = 2.4477

@@ -15,7 +15,7 @@ from posstats.acceptance.published import (
     nssda_accuracy_v,
 )
 from posstats.acceptance.reasons import Reason, Unavailable
-from posstats.acceptance.rmse import MIN_POINTS, RmseInterval, rmse_interval
+from posstats.statistics.rmse import MIN_POINTS, RmseInterval, rmse_interval
 
 _Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from statsmodels.regression.linear_model import OLS  # statsmodels.api imports much else
 
-from posstats.reml import variance_components
+from posstats.statistics.reml import variance_components
 
 _Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from posstats.errors import PosstatsError
-from posstats.linear_model import (
+from posstats.statistics.linear_model import (
     LinearFit,
     generalised_least_squares,
     ordinary_least_squares,

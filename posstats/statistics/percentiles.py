@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, special
 
-from posstats.acceptance import samples
+from posstats.statistics import samples
 
 _Floats = NDArray[np.float64]
 

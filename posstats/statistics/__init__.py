@@ -1,0 +1,1 @@
+"""Regression on time, and accuracy measures with their intervals and tests."""
