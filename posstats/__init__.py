@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from posstats.analysis import Settings, analyse
-    from posstats.block import Block
+    from posstats.block.image_pairs import stereo_models
+    from posstats.block.model import Block
     from posstats.block_io import read_block
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
     from posstats.regression import fit_drift
     from posstats.relative_orientation import orient
-    from posstats.stereo import stereo_models
 
 __version__ = "0.1.0"
 
 _HOME = {
-    "Block": "block",
+    "Block": "block.model",
     "BlockFormatError": "errors",
     "ConvergenceError": "errors",
     "GeometryError": "errors",
@@ -28,7 +28,7 @@ _HOME = {
     "fit_drift": "regression",
     "orient": "relative_orientation",
     "read_block": "block_io",
-    "stereo_models": "stereo",
+    "stereo_models": "block.image_pairs",
 }
 
 __all__ = [

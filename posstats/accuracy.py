@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, GroundPoints, Orientations
+from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.intersection import IntersectedPoints, intersect
 
 _Floats = NDArray[np.float64]

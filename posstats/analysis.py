@@ -17,7 +17,8 @@ from posstats.angle_errors import (
     coplanarity_errors,
     in_camera_frame,
 )
-from posstats.block import Block, Orientations
+from posstats.block.image_pairs import StereoModels, stereo_models
+from posstats.block.model import Block, Orientations
 from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
 from posstats.imu_free_bundle import ImuFreeBundle, adjust_imu_free
@@ -26,7 +27,6 @@ from posstats.parallax import model_rms_px
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.relative_orientation import Method, RelativeOrientation, orient
 from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
-from posstats.stereo import StereoModels, stereo_models
 from posstats.validation import out_of_sample_parallax
 
 _Floats = NDArray[np.float64]

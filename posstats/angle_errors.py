@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations
+from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
+from posstats.block.model import Block, Orientations
 from posstats.coplanarity_adjustment import Priors, adjust
 from posstats.coplanarity_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.errors import GeometryError
@@ -33,7 +34,6 @@ from posstats.observability import (
     observability,
     weak_prior_rad,
 )
-from posstats.stereo import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

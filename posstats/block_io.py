@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block
+from posstats.block.frames import GroundFrame
+from posstats.block.model import Block
 from posstats.errors import BlockFormatError, GeometryError
 from posstats.formats.block_toml import BlockSettings, parse_settings
 from posstats.formats.block_warnings import block_warnings, settings_warnings, time_warnings
@@ -27,7 +28,6 @@ from posstats.formats.orientation_files import (
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
 from posstats.formats.tables import Table, read_bytes, read_table, sha256
 from posstats.formats.toml_section import FILE
-from posstats.frames import GroundFrame
 
 _Floats = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
-from posstats.block import Block, Orientations
+from posstats.block.model import Block, Orientations
 from posstats.correction import corrected
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.checked_table import (

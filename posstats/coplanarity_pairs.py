@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations, TiePoints
-from posstats.stereo import ImagePairs, image_vectors
+from posstats.block.image_pairs import ImagePairs, image_vectors
+from posstats.block.model import Block, Orientations, TiePoints
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Orientations
+from posstats.block.model import Orientations
 from posstats.numerics.kernels.rotation import (
     ANGLE_NAMES,
     CAMERA_ANGLE_NAMES,

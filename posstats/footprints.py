@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.model import Block
 from posstats.intersection import intersect
 
 _Floats = NDArray[np.float64]

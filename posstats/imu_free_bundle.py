@@ -24,7 +24,7 @@ from posstats.adjustment.screening import (
     without_rays,
 )
 from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
-from posstats.block import Block, Orientations
+from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from posstats.block import Accuracy, Orientations, TiePoints
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.image_pairs import image_vectors
+from posstats.block.model import Accuracy, Orientations, TiePoints
 from posstats.numerics.kernels.collinearity import (
     INTERSECTED,
     intersect_rays,
@@ -14,7 +15,6 @@ from posstats.numerics.kernels.collinearity import (
     project_derivatives,
 )
 from posstats.numerics.kernels.rotation import rotation_derivatives
-from posstats.stereo import image_vectors
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

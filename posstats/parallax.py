@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.stereo import MIN_MODEL_POINTS, StereoModels
+from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels
 
 _Floats = NDArray[np.float64]
 

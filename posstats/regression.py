@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import BLOCK_SCOPE
+from posstats.block.model import BLOCK_SCOPE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.statistics.drift import ConstantFit, DriftFit, FitError, fit_constant, fit_drift
 

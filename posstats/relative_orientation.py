@@ -15,6 +15,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels
 from posstats.errors import GeometryError
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import (
@@ -24,7 +25,6 @@ from posstats.numerics.kernels.rotation import (
 )
 from posstats.pair_adjustment import CONVERGED, NOT_CONVERGED, RANK_DEFICIENT, adjust_pairs
 from posstats.pair_blunders import weigh_pairs
-from posstats.stereo import MIN_MODEL_POINTS, StereoModels
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

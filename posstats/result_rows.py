@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from posstats.accuracy import CheckPointResiduals, check_point_accuracy
 from posstats.analysis import Analysis, FrameAnalysis
-from posstats.block import Block
+from posstats.block.model import Block
 from posstats.footprints import footprints
 from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES

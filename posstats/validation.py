@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.angle_errors import AngleErrors
+from posstats.block.image_pairs import StereoModels
 from posstats.correction import axis_of, corrected, fitted_values
 from posstats.parallax import model_rms_px
 from posstats.regression import (
@@ -17,7 +18,6 @@ from posstats.regression import (
     angle_sample,
 )
 from posstats.selection import Decision, OutOfSampleParallax
-from posstats.stereo import StereoModels
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from posstats.block import Block
+from posstats.block.image_pairs import stereo_models
+from posstats.block.model import Block
 from posstats.block_io import read_block, write_block
-from posstats.stereo import stereo_models
 from posstats.synthetic import Scenario, simulate
 
 from .output import staged_folder

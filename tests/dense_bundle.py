@@ -6,7 +6,7 @@ import numpy as np
 from small_blocks import Layout, observed_block, true_block
 
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.block import GroundPoints
+from posstats.block.model import GroundPoints
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 
 STEP = np.array([1e-6] * 3 + [1e-2] * 3)

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from posstats.block import Accuracy, Block, GroundPoints, Orientations, TiePoints
+from posstats.block.camera import Camera, Distortion
+from posstats.block.frames import GroundFrame
+from posstats.block.image_pairs import stereo_models
+from posstats.block.model import Accuracy, Block, GroundPoints, Orientations, TiePoints
 from posstats.block_io import write_block
-from posstats.camera import Camera, Distortion
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import rotation_from_angles
-from posstats.stereo import stereo_models
 
 SCALE_NUMBER = 78_000
 CAMERA = Camera("", "DMC", 13824.0, 7680.0, 10_000.0, (6900.0, 3850.0), 0.012)

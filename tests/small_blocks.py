@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Accuracy, Block, Orientations, TiePoints
-from posstats.camera import Camera
-from posstats.frames import GroundFrame
+from posstats.block.camera import Camera
+from posstats.block.frames import GroundFrame
+from posstats.block.model import Accuracy, Block, Orientations, TiePoints
 from posstats.numerics.kernels.rotation import AngleSystem, rotation_from_angles
 
 CAMERA = Camera("c", "small", 4000.0, 6000.0, 5000.0, (2000.0, 3000.0), 0.01)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from posstats.block import Block
+from posstats.block.model import Block
 from posstats.synthetic import load_scenario, simulate
 
 OMEGA_CONSTANT_RAD = 0.018

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from posstats.block import Orientations
+from posstats.block.image_pairs import ImagePairs, StereoModels
+from posstats.block.model import Orientations
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_angles
-from posstats.stereo import ImagePairs, StereoModels
 
 PRINCIPAL_DISTANCE_PX = np.array([10000.0, 8000.0])  # of two cameras
 PIXEL_SIZE_MM = np.array([0.012, np.nan])

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from posstats.block import Accuracy, Block, GroundPoints, Orientations, TiePoints
-from posstats.camera import Camera
-from posstats.frames import GroundFrame
+from posstats.block.camera import Camera
+from posstats.block.frames import GroundFrame
+from posstats.block.model import Accuracy, Block, GroundPoints, Orientations, TiePoints
 from posstats.numerics.kernels.rotation import rotation_from_angles
 
 CAMERA = Camera("c", "test", 12000.0, 8000.0, 10000.0, (6000.0, 4000.0), 0.012)

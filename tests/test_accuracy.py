@@ -11,8 +11,8 @@ from posstats.accuracy import (
     check_point_accuracy,
     check_point_residuals,
 )
-from posstats.block import GroundPoints
-from posstats.frames import GroundFrame
+from posstats.block.frames import GroundFrame
+from posstats.block.model import GroundPoints
 from posstats.intersection import intersect
 
 

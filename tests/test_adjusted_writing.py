@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from posstats.block.frames import GroundFrame
 from posstats.formats.convention import Convention
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import rotation_from_angles, rotation_from_vector
 
 

@@ -10,7 +10,8 @@ from helpers import shared_path
 from small_blocks import Layout, observed_block, true_block
 
 from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera_frame
-from posstats.block import Block, GroundPoints
+from posstats.block.image_pairs import stereo_models
+from posstats.block.model import Block, GroundPoints
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.numerics.kernels.rotation import (
@@ -20,7 +21,6 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 from posstats.regression import fit_drift
-from posstats.stereo import stereo_models
 
 SIDE_OVERLAP = Layout()
 

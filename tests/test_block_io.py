@@ -15,10 +15,10 @@ import pytest
 from helpers import shared_path
 from perfect_block import edit, largest_parallax_mm, perfect_block, written
 
+from posstats.block.camera import Distortion
+from posstats.block.image_pairs import stereo_models
 from posstats.block_io import read_block
-from posstats.camera import Distortion
 from posstats.errors import BlockFormatError
-from posstats.stereo import stereo_models
 
 
 @pytest.fixture

@@ -9,12 +9,12 @@ import pytest
 from helpers import shared_path
 from perfect_block import edit, largest_parallax_mm, perfect_block, written
 
-from posstats.block import Block
+from posstats.block.camera import Distortion
+from posstats.block.frames import GroundFrame
+from posstats.block.model import Block
 from posstats.block_io import read_block, write_block, write_orientations
-from posstats.camera import Distortion
 from posstats.errors import GeometryError
 from posstats.formats.convention import Convention
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import rotation_from_vector, vector_from_rotation
 
 BROWN = Distortion("brown", -0.05, 0.02, -0.003, 4e-4, -3e-4)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from small_blocks import CAMERA, Layout, observed_block, true_block
 
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.block import GroundPoints
+from posstats.block.model import GroundPoints
 from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import (

@@ -3,7 +3,7 @@
 import numpy as np
 
 from posstats.adjustment.check_points import ideal_xy
-from posstats.camera import Camera, Distortion
+from posstats.block.camera import Camera, Distortion
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from strip_scene import CAMERA, measurements, scene
 
-from posstats.camera import Camera, Distortion
+from posstats.block.camera import Camera, Distortion
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
 from posstats.numerics.kernels.rotation import rotation_from_vector
 

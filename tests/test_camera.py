@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from posstats.camera import Camera, Distortion
+from posstats.block.camera import Camera, Distortion
 from posstats.errors import GeometryError
 
 STRONG = [

@@ -7,6 +7,7 @@ import pytest
 from small_blocks import Layout, observed_block, true_block
 
 from posstats import coplanarity_adjustment
+from posstats.block.image_pairs import cross_strip_pairs, stereo_models
 from posstats.coplanarity_adjustment import Priors, adjust
 from posstats.coplanarity_linearised import linearised
 from posstats.coplanarity_normals import (
@@ -19,7 +20,6 @@ from posstats.coplanarity_normals import (
 from posstats.coplanarity_pairs import point_pairs
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.numerics.kernels.coplanarity import base_frames
-from posstats.stereo import cross_strip_pairs, stereo_models
 
 LAYOUT = Layout(n_images=4, n_points=120)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from posstats.angle_errors import AngleErrors
-from posstats.block import Orientations
+from posstats.block.model import Orientations
 from posstats.correction import corrected, predicted_errors
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.regression import regress

@@ -13,10 +13,10 @@ from strip_scene import block, scene
 
 from posstats.accuracy import check_point_residuals
 from posstats.analysis import Settings, analyse
+from posstats.block.image_pairs import stereo_models
 from posstats.block_io import read_block, write_block
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.results import results
-from posstats.stereo import stereo_models
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 

@@ -9,6 +9,7 @@ import pytest
 from helpers import shared_path
 from scipy import optimize, stats
 
+from posstats.block.image_pairs import stereo_models
 from posstats.experiment.areas import AREAS, area_scenario, area_seed, true_causes
 from posstats.experiment.findings import CRITERIA
 from posstats.experiment.published import (
@@ -20,7 +21,6 @@ from posstats.experiment.published import (
     recomputed,
 )
 from posstats.experiment.seeds import repeated, share, share_interval, write
-from posstats.stereo import stereo_models
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError
 

@@ -7,8 +7,8 @@ import pytest
 from perfect_block import MIDDLE
 from pyproj import CRS, Proj, Transformer
 
+from posstats.block.frames import GroundFrame, require_map_grid
 from posstats.errors import GeometryError
-from posstats.frames import GroundFrame, require_map_grid
 
 GRIDS = {
     **MIDDLE,

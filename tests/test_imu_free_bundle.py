@@ -14,7 +14,8 @@ from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 
 from posstats.analysis import Settings, analyse
 from posstats.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
-from posstats.block import Block
+from posstats.block.image_pairs import stereo_models
+from posstats.block.model import Block
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.imu_free_bundle import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
@@ -22,7 +23,6 @@ from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_fr
 from posstats.reports import block_document, html
 from posstats.reports.cli import cli
 from posstats.results import results
-from posstats.stereo import stereo_models
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}
 ONE_STRIP = scenario()["flight"] | {"n_strips": 1}

@@ -6,12 +6,12 @@ import pytest
 from helpers import shared_path
 from pyproj import Proj
 
+from posstats.block.frames import GroundFrame
 from posstats.formats.navigation import (
     navigation_from_rotation,
     navigation_rotation_vectors,
     rotation_from_navigation,
 )
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import angles_from_rotation, vector_from_rotation, wrapped
 
 

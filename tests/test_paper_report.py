@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
 
+from posstats.block.image_pairs import stereo_models
 from posstats.errors import PosstatsError
 from posstats.experiment.areas import AREAS, area_scenario, area_seed, true_causes
 from posstats.experiment.findings import AreaFindings, find
@@ -23,7 +24,6 @@ from posstats.experiment.seeds import repeated
 from posstats.reports import paper_areas, paper_command
 from posstats.reports.cli import cli
 from posstats.reports.output import staged_folder
-from posstats.stereo import stereo_models
 from posstats.synthetic import simulate
 
 COMMAND = Path(sys.executable).with_name("posstats")

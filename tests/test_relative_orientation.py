@@ -19,6 +19,7 @@ from stereo_scene import (
     with_vectors,
 )
 
+from posstats.block.image_pairs import stereo_models
 from posstats.block_io import read_block
 from posstats.errors import GeometryError
 from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
@@ -37,7 +38,6 @@ from posstats.relative_orientation import (
     orient,
     orient_elements,
 )
-from posstats.stereo import stereo_models
 from posstats.synthetic import load_scenario, simulate
 
 SYSTEMS = ("omega-phi-kappa", "phi-omega-kappa")

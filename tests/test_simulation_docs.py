@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from posstats.stereo import stereo_models
+from posstats.block.image_pairs import stereo_models
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import Scenario, load_scenario
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from test_scenario import changed
 
+from posstats.block.image_pairs import cross_strip_pairs, stereo_models
 from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
 from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation, wrapped
-from posstats.stereo import cross_strip_pairs, stereo_models
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError, load_scenario
 

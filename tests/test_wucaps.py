@@ -12,9 +12,9 @@ import pytest
 from small_scenario import small_block
 
 from posstats.adjustment.settings import DriftPriors
+from posstats.block.image_pairs import stereo_models
 from posstats.numerics.bundle.parameters import BORESIGHT
 from posstats.numerics.kernels.rotation import vector_from_rotation, wrapped
-from posstats.stereo import stereo_models
 from posstats.wucaps.adjustments import CONTROLS, adjusted_block, control_points, pos_parameters
 from posstats.wucaps.findings import CRITERIA, LESS, RECOMMENDED, SituationFindings
 from posstats.wucaps.measures import measured

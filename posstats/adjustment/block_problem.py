@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block
+from posstats.block.model import Block
 from posstats.errors import GeometryError
 from posstats.numerics.bundle.parameters import CommonParameter, Exposures
 from posstats.numerics.bundle.pos_observations import PosObservations

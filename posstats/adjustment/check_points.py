@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations, TiePoints
+from posstats.block.model import Block, Orientations, TiePoints
 from posstats.errors import GeometryError
 from posstats.intersection import IntersectedPoints, intersect
 from posstats.numerics.bundle.parameters import ParameterEffects, parameter_effects

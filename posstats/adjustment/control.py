@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from posstats.block import Block, GroundPoints
+from posstats.block.model import Block, GroundPoints
 from posstats.errors import PosstatsError
 
 _Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.screening import contradicting_rays, without_rays
-from posstats.block import Block, Orientations
+from posstats.block.model import Block, Orientations
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.formats.block_toml import RADIANS_PER_UNIT, AngleUnit, FileAngleSystem
 from posstats.formats.block_writing import source_of

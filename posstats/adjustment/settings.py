@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from posstats.adjustment.control import NAMED_CHOICES, ControlChoice
-from posstats.block import Block
+from posstats.block.model import Block
 from posstats.errors import PosstatsError
 from posstats.numerics.bundle.parameters import (
     BLOCK,

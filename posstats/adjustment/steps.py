@@ -47,7 +47,7 @@ from posstats.adjustment.significance import (
 )
 from posstats.adjustment.snooping import Snooping, snoop
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
-from posstats.block import Block, GroundPoints, Orientations
+from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem

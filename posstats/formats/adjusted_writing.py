@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations
+from posstats.block.model import Block, Orientations
 from posstats.formats.block_writing import POSITION_DECIMALS, source_of
 from posstats.formats.convention import Convention
 from posstats.numerics.kernels.rotation import wrapped

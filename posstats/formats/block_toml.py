@@ -7,11 +7,11 @@ from typing import Any, Literal, cast
 
 import numpy as np
 
-from posstats.block import Accuracy
-from posstats.camera import Camera, Distortion, DistortionModel
+from posstats.block.camera import Camera, Distortion, DistortionModel
+from posstats.block.frames import require_map_grid
+from posstats.block.model import Accuracy
 from posstats.errors import GeometryError
 from posstats.formats.toml_section import FILE, TomlSection, line_of_section, nearest
-from posstats.frames import require_map_grid
 
 FileAngleSystem = Literal["omega-phi-kappa", "phi-omega-kappa", "roll-pitch-heading"]
 AngleUnit = Literal["deg", "rad", "gon"]

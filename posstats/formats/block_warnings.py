@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block
+from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, stereo_models
+from posstats.block.model import Block
 from posstats.formats.block_toml import BlockSettings
-from posstats.stereo import MIN_MODEL_POINTS, StereoModels, stereo_models
 
 _SHOWN = 5
 

@@ -10,8 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from posstats.block import Block, GroundPoints, Orientations, OrientationTable
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.frames import GroundFrame
+from posstats.block.model import Block, GroundPoints, Orientations, OrientationTable
 from posstats.errors import BlockFormatError, GeometryError
 from posstats.formats.block_toml import (
     DISTORTION_COEFFICIENTS,
@@ -21,7 +22,6 @@ from posstats.formats.block_toml import (
 )
 from posstats.formats.convention import Convention
 from posstats.formats.toml_section import FILE
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
 
 _Floats = NDArray[np.float64]

@@ -17,13 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.block.frames import GroundFrame
 from posstats.formats.block_toml import RADIANS_PER_UNIT, BlockSettings, FileAngleSystem
 from posstats.formats.navigation import (
     navigation_from_rotation,
     navigation_rotation_vectors,
     rotation_from_navigation,
 )
-from posstats.frames import GroundFrame
 from posstats.numerics.kernels.rotation import (
     AngleSystem,
     angles_from_rotation,

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from posstats.block import BLOCK_SCOPE, Orientations, OrientationTable
+from posstats.block.model import BLOCK_SCOPE, Orientations, OrientationTable
 from posstats.formats.block_toml import BlockSettings
 from posstats.formats.convention import Convention
 from posstats.formats.tables import Table

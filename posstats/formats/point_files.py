@@ -9,12 +9,12 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from posstats.block import GroundPoints, TiePoints
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.frames import GroundFrame
+from posstats.block.model import GroundPoints, TiePoints
 from posstats.errors import GeometryError
 from posstats.formats.orientation_files import LARGEST_M, read_positions
 from posstats.formats.tables import Table
-from posstats.frames import GroundFrame
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

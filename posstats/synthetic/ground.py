@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.block.frames import GroundFrame
 from posstats.errors import GeometryError
-from posstats.frames import GroundFrame
 from posstats.synthetic.flight_plan import FlightPlan, footprint_m
 from posstats.synthetic.scenario import PointSpec, Scenario
 from posstats.synthetic.streams import Streams

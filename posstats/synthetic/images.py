@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from posstats.block import Orientations, TiePoints
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.model import Orientations, TiePoints
 from posstats.errors import GeometryError
 from posstats.synthetic.flight_plan import FlightPlan
 from posstats.synthetic.ground import Surface, TruePoints

@@ -12,7 +12,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from posstats.camera import Camera, Distortion, DistortionModel
+from posstats.block.camera import Camera, Distortion, DistortionModel
 from posstats.errors import BlockFormatError
 from posstats.formats.checked_table import (
     Rule,

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Accuracy, Block, GroundPoints, Orientations
+from posstats.block.frames import GroundFrame, require_map_grid
+from posstats.block.model import Accuracy, Block, GroundPoints, Orientations
 from posstats.formats.block_warnings import block_warnings
-from posstats.frames import GroundFrame, require_map_grid
 from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,

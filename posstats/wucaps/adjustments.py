@@ -16,7 +16,7 @@ from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
 from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.adjustment.significance import parameter_tests
-from posstats.block import Block, GroundPoints, Orientations
+from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem

@@ -10,11 +10,11 @@ from posstats.accuracy import (
     check_point_accuracy,
     check_point_residuals,
 )
-from posstats.block import Block, Orientations
+from posstats.block.image_pairs import StereoModels
+from posstats.block.model import Block, Orientations
 from posstats.errors import PosstatsError
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.parallax import block_statistics, model_rms_px
-from posstats.stereo import StereoModels
 
 _Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ with the same boresight and with shifts and drifts of its own.
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from posstats.block import Block
+from posstats.block.model import Block
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 from posstats.synthetic.scenario import AngleError, PositionError
 

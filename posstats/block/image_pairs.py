@@ -6,8 +6,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.block import Block, Orientations, TiePoints
-from posstats.camera import Camera
+from posstats.block.camera import Camera
+from posstats.block.model import Block, Orientations, TiePoints
 from posstats.numerics.kernels.coplanarity import base_frames, y_parallax
 
 _Floats = NDArray[np.float64]

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from posstats.camera import Camera
-from posstats.frames import GroundFrame
+from posstats.block.camera import Camera
+from posstats.block.frames import GroundFrame
 from posstats.numerics.kernels.rotation import AngleSystem, rotation_from_angles
 
 _Floats = NDArray[np.float64]

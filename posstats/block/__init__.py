@@ -1,0 +1,1 @@
+"""What a survey is: images, cameras, points, frames, and which images are pairs."""
