@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from posstats.analysis import Settings, analyse
     from posstats.block.image_pairs import stereo_models
     from posstats.block.model import Block
-    from posstats.block_io import read_block
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
+    from posstats.formats.block_folder import read_block
     from posstats.regression import fit_drift
     from posstats.relative_orientation import orient
 
@@ -27,7 +27,7 @@ _HOME = {
     "analyse": "analysis",
     "fit_drift": "regression",
     "orient": "relative_orientation",
-    "read_block": "block_io",
+    "read_block": "formats.block_folder",
     "stereo_models": "block.image_pairs",
 }
 

@@ -21,7 +21,8 @@ from posstats.adjustment.significance import parameter_covariance
 from posstats.block.model import Block, Orientations
 from posstats.correction import corrected
 from posstats.errors import BlockFormatError, PosstatsError
-from posstats.formats.checked_table import (
+from posstats.formats.text_table import sha256
+from posstats.formats.toml_table import (
     Rule,
     Table,
     number,
@@ -31,7 +32,6 @@ from posstats.formats.checked_table import (
     text,
     whole,
 )
-from posstats.formats.tables import sha256
 from posstats.numerics.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
 from posstats.numerics.bundle.pos_observations import antenna_positions, imu_angles
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem

@@ -130,7 +130,7 @@ def _results(
         return values, text, {}
     # an analysis takes a second to import, and results.json needs none
     from posstats.analysis import Settings, analyse
-    from posstats.block_io import read_block
+    from posstats.formats.block_folder import read_block
     from posstats.results import results
 
     block = read_block(source)

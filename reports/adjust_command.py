@@ -8,9 +8,9 @@ from typing import Any, cast
 from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
 from posstats.adjustment.control import NAMED_CHOICES, read_ids
 from posstats.adjustment.results import adjustment_results, write_adjustment
-from posstats.block_io import read_block
 from posstats.calibration import calibrated
 from posstats.errors import PosstatsError
+from posstats.formats.block_folder import read_block
 from posstats.plain_values import to_json
 
 from . import adjustment_document, adjustment_verdict

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from posstats.analysis import Settings, analyse
-from posstats.block_io import read_block
 from posstats.calibration import calibrated
+from posstats.formats.block_folder import read_block
 
 from .analysis_folder import write_analysis
 from .output import staged_folder

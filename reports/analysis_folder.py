@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.analysis import Analysis
-from posstats.block_io import write_orientations
+from posstats.formats.block_folder import write_orientations
 from posstats.plain_values import to_json
 from posstats.results import results
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
-from posstats.block_io import read_block, write_block
+from posstats.formats.block_folder import read_block, write_block
 from posstats.synthetic import Scenario, simulate
 
 from .output import staged_folder

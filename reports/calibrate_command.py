@@ -8,9 +8,9 @@ import numpy as np
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
-from posstats.block_io import read_block
 from posstats.calibration import Calibration, calibrate, write_calibration
 from posstats.errors import PosstatsError
+from posstats.formats.block_folder import read_block
 
 from . import adjustment_verdict
 from . import format as fmt

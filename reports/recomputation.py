@@ -5,8 +5,8 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from posstats.analysis import Settings, analyse
-from posstats.block_io import read_block
 from posstats.calibration import calibrated
+from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
 from posstats.plain_values import to_json
 from posstats.results import results

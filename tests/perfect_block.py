@@ -9,7 +9,7 @@ from posstats.block.camera import Camera, Distortion
 from posstats.block.frames import GroundFrame
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Accuracy, Block, GroundPoints, Orientations, TiePoints
-from posstats.block_io import write_block
+from posstats.formats.block_folder import write_block
 from posstats.numerics.kernels.rotation import rotation_from_angles
 
 SCALE_NUMBER = 78_000

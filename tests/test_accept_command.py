@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from small_scenario import small_block
 
 from posstats.acceptance.assessment import ChosenStatement
-from posstats.block_io import write_block
+from posstats.formats.block_folder import write_block
 from posstats.reports.accept_command import length_m
 from posstats.reports.acceptance_data import _filled
 from posstats.reports.acceptance_units import Lengths, margin

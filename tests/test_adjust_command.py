@@ -14,7 +14,7 @@ from small_scenario import small_block
 from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
-from posstats.block_io import write_block
+from posstats.formats.block_folder import write_block
 from posstats.reports import adjustment_document, adjustment_tables, html
 from posstats.reports.cli import cli
 

@@ -16,8 +16,8 @@ from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
-from posstats.block_io import write_block
 from posstats.errors import PosstatsError
+from posstats.formats.block_folder import write_block
 from posstats.intersection import intersect
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.plain_values import to_json

@@ -12,8 +12,8 @@ from small_blocks import Layout, observed_block, true_block
 from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera_frame
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block, GroundPoints
-from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
+from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,

@@ -17,8 +17,8 @@ from perfect_block import edit, largest_parallax_mm, perfect_block, written
 
 from posstats.block.camera import Distortion
 from posstats.block.image_pairs import stereo_models
-from posstats.block_io import read_block
 from posstats.errors import BlockFormatError
+from posstats.formats.block_folder import read_block
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ from perfect_block import edit, largest_parallax_mm, perfect_block, written
 from posstats.block.camera import Distortion
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
-from posstats.block_io import read_block, write_block, write_orientations
 from posstats.errors import GeometryError
+from posstats.formats.block_folder import read_block, write_block, write_orientations
 from posstats.formats.convention import Convention
 from posstats.numerics.kernels.rotation import rotation_from_vector, vector_from_rotation
 

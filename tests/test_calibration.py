@@ -15,7 +15,6 @@ from small_scenario import small_block
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.block_io import write_block
 from posstats.calibration import (
     Calibration,
     apply_calibration,
@@ -26,6 +25,7 @@ from posstats.calibration import (
     write_calibration,
 )
 from posstats.errors import BlockFormatError, PosstatsError
+from posstats.formats.block_folder import write_block
 from posstats.numerics.bundle import adjust
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.reports.cli import cli

@@ -14,7 +14,7 @@ import pytest
 from small_scenario import small_block
 
 from posstats import __version__, read_block
-from posstats.block_io import write_block
+from posstats.formats.block_folder import write_block
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

@@ -14,7 +14,7 @@ from strip_scene import block, scene
 from posstats.accuracy import check_point_residuals
 from posstats.analysis import Settings, analyse
 from posstats.block.image_pairs import stereo_models
-from posstats.block_io import read_block, write_block
+from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.results import results
 

@@ -16,8 +16,8 @@ from posstats.analysis import Settings, analyse
 from posstats.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
-from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
+from posstats.formats.block_folder import read_block, write_block
 from posstats.imu_free_bundle import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.reports import block_document, html

@@ -8,7 +8,7 @@ from helpers import shared_path
 from scipy.optimize import least_squares
 from strip_scene import CAMERA, measurements, orientations, projected, scene
 
-from posstats.block_io import read_block
+from posstats.formats.block_folder import read_block
 from posstats.intersection import intersect
 from posstats.numerics.kernels.rotation import angles_from_rotation
 

@@ -20,8 +20,8 @@ from stereo_scene import (
 )
 
 from posstats.block.image_pairs import stereo_models
-from posstats.block_io import read_block
 from posstats.errors import GeometryError
+from posstats.formats.block_folder import read_block
 from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
 from posstats.numerics.kernels.rotation import (
     angles_from_rotation,

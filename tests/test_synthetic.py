@@ -11,8 +11,8 @@ import pytest
 from test_scenario import changed
 
 from posstats.block.image_pairs import cross_strip_pairs, stereo_models
-from posstats.block_io import read_block, write_block
 from posstats.errors import GeometryError
+from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation, wrapped
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError, load_scenario

@@ -21,8 +21,8 @@ from click.testing import CliRunner
 from small_scenario import small_block
 
 from posstats.analysis import Settings, analyse
-from posstats.block_io import read_block, write_block
 from posstats.errors import PosstatsError
+from posstats.formats.block_folder import read_block, write_block
 from posstats.plain_values import to_json
 from posstats.reports import verify_command
 from posstats.reports import verify_words as words

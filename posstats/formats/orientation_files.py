@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from posstats.block.model import BLOCK_SCOPE, Orientations, OrientationTable
 from posstats.formats.block_toml import BlockSettings
 from posstats.formats.convention import Convention
-from posstats.formats.tables import Table
+from posstats.formats.text_table import Table
 from posstats.formats.times import read_times
 
 _Floats = NDArray[np.float64]

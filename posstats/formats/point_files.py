@@ -14,7 +14,7 @@ from posstats.block.frames import GroundFrame
 from posstats.block.model import GroundPoints, TiePoints
 from posstats.errors import GeometryError
 from posstats.formats.orientation_files import LARGEST_M, read_positions
-from posstats.formats.tables import Table
+from posstats.formats.text_table import Table
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

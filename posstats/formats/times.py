@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.formats.tables import Table
+from posstats.formats.text_table import Table
 
 _Floats = NDArray[np.float64]
 

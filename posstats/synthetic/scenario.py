@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 from posstats.block.camera import Camera, Distortion, DistortionModel
 from posstats.errors import BlockFormatError
-from posstats.formats.checked_table import (
+from posstats.formats.toml_table import (
     Rule,
     Table,
     number,

@@ -26,7 +26,7 @@ from posstats.formats.orientation_files import (
     source_table,
 )
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
-from posstats.formats.tables import Table, read_bytes, read_table, sha256
+from posstats.formats.text_table import Table, read_bytes, read_table, sha256
 from posstats.formats.toml_section import FILE
 
 _Floats = NDArray[np.float64]
