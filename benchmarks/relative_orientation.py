@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from posstats.block.image_pairs import StereoModels, stereo_models
+from posstats.geometry.stereo.relative_orientation import orient
 from posstats.numerics.kernels.coplanarity import base_frames, y_parallax
 from posstats.numerics.kernels.rotation import rotation_from_vector
-from posstats.relative_orientation import orient
 from posstats.synthetic import load_scenario, simulate
 
 try:

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from posstats.block.model import Block
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
     from posstats.formats.block_folder import read_block
+    from posstats.geometry.stereo.relative_orientation import orient
     from posstats.regression import fit_drift
-    from posstats.relative_orientation import orient
 
 __version__ = "0.1.0"
 
@@ -26,7 +26,7 @@ _HOME = {
     "Settings": "analysis",
     "analyse": "analysis",
     "fit_drift": "regression",
-    "orient": "relative_orientation",
+    "orient": "geometry.stereo.relative_orientation",
     "read_block": "formats.block_folder",
     "stereo_models": "block.image_pairs",
 }

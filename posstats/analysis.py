@@ -8,7 +8,6 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.accuracy import CheckPointResiduals, check_point_residuals
 from posstats.angle_errors import (
     AngleErrors,
     ErrorSource,
@@ -21,11 +20,12 @@ from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
+from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
+from posstats.geometry.stereo.parallax import model_rms_px
+from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.imu_free_bundle import ImuFreeBundle, adjust_imu_free
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.parallax import model_rms_px
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
-from posstats.relative_orientation import Method, RelativeOrientation, orient
 from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
 from posstats.validation import out_of_sample_parallax
 

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
-from posstats.coplanarity_adjustment import Priors, adjust
-from posstats.coplanarity_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.errors import GeometryError
+from posstats.geometry.coplanarity.adjustment import Priors, adjust
+from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.numerics.kernels.rotation import (
     rotation_derivatives,

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.screening import (
@@ -26,6 +25,11 @@ from posstats.adjustment.screening import (
 from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
+from posstats.geometry.ground.check_points import (
+    CheckPointResiduals,
+    differences,
+    surveyed_check_points,
+)
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from posstats import __version__
 from posstats.analysis import Analysis
-from posstats.parallax import NOTICEABLE, block_statistics
+from posstats.geometry.stereo.parallax import NOTICEABLE, block_statistics
+from posstats.geometry.stereo.relative_orientation import RelativeOrientation
 from posstats.plain_values import RESULTS_SCHEMA, plain, versions
-from posstats.relative_orientation import RelativeOrientation
 from posstats.result_rows import (
     accuracy_row,
     angle_error_rows,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from posstats.angle_errors import AngleErrors
 from posstats.block.image_pairs import StereoModels
 from posstats.correction import axis_of, corrected, fitted_values
-from posstats.parallax import model_rms_px
+from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.regression import (
     BLOCK_SCOPE,
     AngleSample,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from posstats.parallax import NOTICEABLE
+from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.wucaps.findings import (
     LESS,
     MOST_HORIZONTAL,

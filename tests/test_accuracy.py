@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from strip_scene import block, scene
 
-from posstats.accuracy import (
+from posstats.block.frames import GroundFrame
+from posstats.block.model import GroundPoints
+from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     check_point_accuracy,
     check_point_residuals,
 )
-from posstats.block.frames import GroundFrame
-from posstats.block.model import GroundPoints
-from posstats.intersection import intersect
+from posstats.geometry.ground.intersection import intersect
 
 
 def _residuals(difference_m, status=None):

@@ -18,7 +18,7 @@ from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
-from posstats.intersection import intersect
+from posstats.geometry.ground.intersection import intersect
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.plain_values import to_json
 from posstats.reports.adjustment_verdict import paragraph

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from small_blocks import Layout, observed_block, true_block
 
-from posstats import coplanarity_adjustment
 from posstats.block.image_pairs import cross_strip_pairs, stereo_models
-from posstats.coplanarity_adjustment import Priors, adjust
-from posstats.coplanarity_linearised import linearised
-from posstats.coplanarity_normals import (
+from posstats.errors import ConvergenceError, GeometryError
+from posstats.geometry.coplanarity import adjustment as coplanarity_adjustment
+from posstats.geometry.coplanarity.adjustment import Priors, adjust
+from posstats.geometry.coplanarity.linearised import linearised
+from posstats.geometry.coplanarity.normals import (
     RIDGE,
     PointRays,
     accumulate_normals,
     matrix_of_parts,
     precision,
 )
-from posstats.coplanarity_pairs import point_pairs
-from posstats.errors import ConvergenceError, GeometryError
+from posstats.geometry.coplanarity.point_pairs import point_pairs
 from posstats.numerics.kernels.coplanarity import base_frames
 
 LAYOUT = Layout(n_images=4, n_points=120)

@@ -11,10 +11,10 @@ from helpers import shared_path
 from small_blocks import Layout, observed_block, true_block
 from strip_scene import block, scene
 
-from posstats.accuracy import check_point_residuals
 from posstats.analysis import Settings, analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.formats.block_folder import read_block, write_block
+from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.results import results
 

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 from strip_scene import CAMERA, measurements, orientations, projected, scene
 
 from posstats.formats.block_folder import read_block
-from posstats.intersection import intersect
+from posstats.geometry.ground.intersection import intersect
 from posstats.numerics.kernels.rotation import angles_from_rotation
 
 CAMERAS = (CAMERA,)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from stereo_scene import true_models, with_angle_errors
 
-from posstats.parallax import block_statistics, model_rms_px, strip_statistics
+from posstats.geometry.stereo.parallax import block_statistics, model_rms_px, strip_statistics
 
 
 def test_the_rms_is_over_all_points_of_a_model():

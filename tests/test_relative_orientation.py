@@ -22,21 +22,21 @@ from stereo_scene import (
 from posstats.block.image_pairs import stereo_models
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block
-from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
-from posstats.numerics.kernels.rotation import (
-    angles_from_rotation,
-    rotation_from_angles,
-    vector_from_rotation,
-    wrapped,
-)
-from posstats.parallax import model_rms_px
-from posstats.relative_orientation import (
+from posstats.geometry.stereo.parallax import model_rms_px
+from posstats.geometry.stereo.relative_orientation import (
     DEPENDENT,
     ELEMENTS,
     INDEPENDENT,
     check_solvable,
     orient,
     orient_elements,
+)
+from posstats.numerics.kernels.coplanarity import base_frames, y_parallax, y_parallax_derivatives
+from posstats.numerics.kernels.rotation import (
+    angles_from_rotation,
+    rotation_from_angles,
+    vector_from_rotation,
+    wrapped,
 )
 from posstats.synthetic import load_scenario, simulate
 

@@ -9,7 +9,7 @@ from small_scenario import small_block
 from posstats.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
 from posstats.block.image_pairs import stereo_models
 from posstats.correction import corrected, predicted_errors
-from posstats.parallax import model_rms_px
+from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.regression import regress
 from posstats.selection import decide, load_rules
 from posstats.validation import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from posstats.block.model import Block, Orientations, TiePoints
 from posstats.errors import GeometryError
-from posstats.intersection import IntersectedPoints, intersect
+from posstats.geometry.ground.intersection import IntersectedPoints, intersect
 from posstats.numerics.bundle.parameters import ParameterEffects, parameter_effects
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays

@@ -13,12 +13,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.accuracy import (
-    CheckPointResiduals,
-    check_point_residuals,
-    differences,
-    surveyed_check_points,
-)
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
@@ -49,6 +43,12 @@ from posstats.adjustment.snooping import Snooping, snoop
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
+from posstats.geometry.ground.check_points import (
+    CheckPointResiduals,
+    check_point_residuals,
+    differences,
+    surveyed_check_points,
+)
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from posstats.analysis import Analysis, Progress, Settings, analyse
 from posstats.block.image_pairs import StereoModels
 from posstats.block.model import Block, Orientations
-from posstats.parallax import block_statistics, model_rms_px
+from posstats.geometry.stereo.parallax import block_statistics, model_rms_px
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 
 AREAS = (1, 2, 3)

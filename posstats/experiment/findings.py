@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from posstats.experiment.areas import TrueCauses
+from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.parallax import NOTICEABLE
 from posstats.synthetic import Scenario
 
 Results = Mapping[str, Any]

@@ -10,13 +10,17 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.accuracy import CheckPointResiduals, differences, surveyed_check_points
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
 from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.adjustment.significance import parameter_tests
 from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.geometry.ground.check_points import (
+    CheckPointResiduals,
+    differences,
+    surveyed_check_points,
+)
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem

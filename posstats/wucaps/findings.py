@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from posstats.parallax import NOTICEABLE
+from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.wucaps.adjustments import CONTROLS, Control
 from posstats.wucaps.experiment import SituationRun
 from posstats.wucaps.situations import Situation

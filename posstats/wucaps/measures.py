@@ -5,16 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.accuracy import (
+from posstats.block.image_pairs import StereoModels
+from posstats.block.model import Block, Orientations
+from posstats.errors import PosstatsError
+from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     check_point_accuracy,
     check_point_residuals,
 )
-from posstats.block.image_pairs import StereoModels
-from posstats.block.model import Block, Orientations
-from posstats.errors import PosstatsError
+from posstats.geometry.stereo.parallax import block_statistics, model_rms_px
 from posstats.numerics.kernels.rotation import wrapped
-from posstats.parallax import block_statistics, model_rms_px
 
 _Floats = NDArray[np.float64]
 

@@ -3,15 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
-from posstats.numerics.kernels.compiled import inner_kernel, kernel
-from posstats.pair_equations import (
+from posstats.geometry.stereo.pair_equations import (
     Pair,
     normal_equations,
     packed,
     residuals,
     take_weights,
 )
+from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -17,14 +17,19 @@ from numpy.typing import NDArray
 
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels
 from posstats.errors import GeometryError
+from posstats.geometry.stereo.pair_adjustment import (
+    CONVERGED,
+    NOT_CONVERGED,
+    RANK_DEFICIENT,
+    adjust_pairs,
+)
+from posstats.geometry.stereo.pair_blunders import weigh_pairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import (
     AngleSystem,
     angles_from_rotation,
     rotation_from_angles,
 )
-from posstats.pair_adjustment import CONVERGED, NOT_CONVERGED, RANK_DEFICIENT, adjust_pairs
-from posstats.pair_blunders import weigh_pairs
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -15,16 +15,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity_linearised import linearised
-from posstats.coplanarity_normals import (
+from posstats.errors import ConvergenceError, GeometryError
+from posstats.geometry.coplanarity.linearised import linearised
+from posstats.geometry.coplanarity.normals import (
     Observed,
     PointRays,
     accumulate_normals,
     matrix_of_parts,
     precision,
 )
-from posstats.coplanarity_pairs import PointPairs
-from posstats.errors import ConvergenceError, GeometryError
+from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
 from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated

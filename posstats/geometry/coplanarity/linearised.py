@@ -10,8 +10,8 @@ opposes it in a direction without parallax, such as the tilt of the block, are o
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.coplanarity_normals import Observed
-from posstats.coplanarity_pairs import PointPairs
+from posstats.geometry.coplanarity.normals import Observed
+from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.compiled import kernel
 from posstats.numerics.kernels.coplanarity import y_parallax_derivatives
 from posstats.numerics.kernels.rotation import (

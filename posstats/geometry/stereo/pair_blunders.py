@@ -8,10 +8,16 @@ of points (Rousseeuw and Leroy 1987) give Tukey's weights their start.
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.geometry.stereo.pair_adjustment import least_squares, moved
+from posstats.geometry.stereo.pair_equations import (
+    Pair,
+    linearised,
+    packed,
+    residuals,
+    take_weights,
+)
 from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-from posstats.pair_adjustment import least_squares, moved
-from posstats.pair_equations import Pair, linearised, packed, residuals, take_weights
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

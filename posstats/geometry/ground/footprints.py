@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from posstats.block.camera import Camera
 from posstats.block.model import Block
-from posstats.intersection import intersect
+from posstats.geometry.ground.intersection import intersect
 
 _Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block.model import Block, GroundPoints, Orientations
-from posstats.intersection import IntersectedPoints, intersect
+from posstats.geometry.ground.intersection import IntersectedPoints, intersect
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -1,0 +1,1 @@
+"""What rays of a block say: stereo models, coplanarity, points on the ground."""

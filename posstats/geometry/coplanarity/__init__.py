@@ -1,0 +1,1 @@
+"""The coplanarity adjustment of a block: angle errors without object points."""

@@ -1,0 +1,1 @@
+"""Points on the ground: intersection, footprints, check points."""

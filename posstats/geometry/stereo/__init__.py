@@ -1,0 +1,1 @@
+"""Stereo models: vertical parallax, relative orientation."""
