@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.adjustment.imu_free import ImuFreeBundle, adjust_imu_free
 from posstats.angle_errors import (
     AngleErrors,
     ErrorSource,
@@ -23,7 +24,6 @@ from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
-from posstats.imu_free_bundle import ImuFreeBundle, adjust_imu_free
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules

@@ -14,12 +14,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.adjustment.imu_free import ImuFreeBundle
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
 from posstats.geometry.coplanarity.adjustment import Priors, adjust
 from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE, long_bases, point_pairs
-from posstats.imu_free_bundle import ImuFreeBundle
 from posstats.numerics.kernels.rotation import (
     rotation_derivatives,
     rotation_from_angles,

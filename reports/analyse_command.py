@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from posstats.adjustment.calibration import calibrated
 from posstats.analysis import Settings, analyse
-from posstats.calibration import calibrated
 from posstats.formats.block_folder import read_block
 
 from .analysis_folder import write_analysis

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
+from posstats.adjustment.calibration import Calibration, calibrate, write_calibration
 from posstats.adjustment.results import adjustment_results
-from posstats.calibration import Calibration, calibrate, write_calibration
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 

@@ -4,8 +4,8 @@ import json
 from pathlib import Path, PurePath
 from typing import Any
 
+from posstats.adjustment.calibration import calibrated
 from posstats.analysis import Settings, analyse
-from posstats.calibration import calibrated
 from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
 from posstats.plain_values import to_json

@@ -15,7 +15,7 @@ from small_scenario import small_block
 
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.calibration import (
+from posstats.adjustment.calibration import (
     Calibration,
     apply_calibration,
     calibrate,

@@ -12,13 +12,13 @@ from scipy import stats
 from small_blocks import Layout, observed_block, true_block
 from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 
+from posstats.adjustment.imu_free import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.analysis import Settings, analyse
 from posstats.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
-from posstats.imu_free_bundle import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.reports import block_document, html
 from posstats.reports.cli import cli
