@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.angle_errors import AngleErrors, coplanarity_errors
+from posstats.analysis.angle_errors import AngleErrors, coplanarity_errors
+from posstats.analysis.regression import BLOCK_SCOPE, angle_sample
 from posstats.block.image_pairs import stereo_models
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.regression import BLOCK_SCOPE, angle_sample
 from posstats.statistics.drift import MIN_LINE_POINTS
 from posstats.synthetic import load_scenario, simulate
 

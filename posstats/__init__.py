@@ -7,13 +7,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from posstats.analysis import Settings, analyse
+    from posstats.analysis.regression import fit_drift
+    from posstats.analysis.steps import Settings, analyse
     from posstats.block.image_pairs import stereo_models
     from posstats.block.model import Block
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
     from posstats.formats.block_folder import read_block
     from posstats.geometry.stereo.relative_orientation import orient
-    from posstats.regression import fit_drift
 
 __version__ = "0.1.0"
 
@@ -23,9 +23,9 @@ _HOME = {
     "ConvergenceError": "errors",
     "GeometryError": "errors",
     "PosstatsError": "errors",
-    "Settings": "analysis",
-    "analyse": "analysis",
-    "fit_drift": "regression",
+    "Settings": "analysis.steps",
+    "analyse": "analysis.steps",
+    "fit_drift": "analysis.regression",
     "orient": "geometry.stereo.relative_orientation",
     "read_block": "formats.block_folder",
     "stereo_models": "block.image_pairs",

@@ -129,9 +129,9 @@ def _results(
         values, text = _read_results(source)
         return values, text, {}
     # an analysis takes a second to import, and results.json needs none
-    from posstats.analysis import Settings, analyse
+    from posstats.analysis.results import results
+    from posstats.analysis.steps import Settings, analyse
     from posstats.formats.block_folder import read_block
-    from posstats.results import results
 
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")

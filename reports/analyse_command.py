@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from posstats.adjustment.calibration import calibrated
-from posstats.analysis import Settings, analyse
+from posstats.analysis.steps import Settings, analyse
 from posstats.formats.block_folder import read_block
 
 from .analysis_folder import write_analysis

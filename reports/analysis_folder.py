@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from posstats.analysis import Analysis
+from posstats.analysis.results import results
+from posstats.analysis.steps import Analysis
 from posstats.formats.block_folder import write_orientations
 from posstats.plain_values import to_json
-from posstats.results import results
 
 
 def write_analysis(analysis: Analysis, folder: Path, *, created: str) -> dict[str, Any]:

@@ -89,7 +89,7 @@ def analyse(
     Example:
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
-    from posstats.analysis import Settings
+    from posstats.analysis.steps import Settings
 
     from .analyse_command import analyse_block
 

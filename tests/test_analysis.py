@@ -9,12 +9,12 @@ from helpers import shared_path
 from small_scenario import OMEGA_DRIFT_RAD_PER_S, mean_px, small_block
 
 from posstats import PosstatsError, Settings, analyse, orient, read_block, stereo_models
-from posstats.analysis import Analysis
+from posstats.analysis.results import results
+from posstats.analysis.steps import Analysis
 from posstats.block.model import Block
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import angles_from_rotation
-from posstats.results import results
 
 
 @pytest.fixture(scope="module")

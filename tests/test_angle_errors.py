@@ -9,7 +9,8 @@ import pytest
 from helpers import shared_path
 from small_blocks import Layout, observed_block, true_block
 
-from posstats.angle_errors import adjusted_errors, coplanarity_errors, in_camera_frame
+from posstats.analysis.angle_errors import adjusted_errors, coplanarity_errors, in_camera_frame
+from posstats.analysis.regression import fit_drift
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block, GroundPoints
 from posstats.errors import GeometryError
@@ -20,7 +21,6 @@ from posstats.numerics.kernels.rotation import (
     vector_from_rotation,
     wrapped,
 )
-from posstats.regression import fit_drift
 
 SIDE_OVERLAP = Layout()
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from posstats.angle_errors import AngleErrors
+from posstats.analysis.angle_errors import AngleErrors
+from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.regression import regress
+from posstats.analysis.rules import decide, load_rules
 from posstats.block.model import Orientations
-from posstats.correction import corrected, predicted_errors
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
-from posstats.regression import regress
-from posstats.selection import decide, load_rules
 
 SYSTEMS = ["omega-phi-kappa", "phi-omega-kappa"]
 

@@ -13,8 +13,9 @@ from small_blocks import Layout, observed_block, true_block
 from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 
 from posstats.adjustment.imu_free import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
-from posstats.analysis import Settings, analyse
-from posstats.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
+from posstats.analysis.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
+from posstats.analysis.results import results
+from posstats.analysis.steps import Settings, analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
 from posstats.errors import GeometryError
@@ -22,7 +23,6 @@ from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.reports import block_document, html
 from posstats.reports.cli import cli
-from posstats.results import results
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}
 ONE_STRIP = scenario()["flight"] | {"n_strips": 1}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from statsmodels.stats.multitest import multipletests
 
-from posstats.angle_errors import AngleErrors
+from posstats.analysis.angle_errors import AngleErrors
+from posstats.analysis.regression import regress
+from posstats.analysis.rules import RuleFormatError, decide, load_rules
 from posstats.errors import BlockFormatError, PosstatsError
-from posstats.regression import regress
-from posstats.selection import RuleFormatError, decide, load_rules
 
 N_STRIPS, PER_STRIP = 5, 20
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from small_scenario import small_block
 
-from posstats.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
+from posstats.analysis.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
+from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.out_of_sample import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax
+from posstats.analysis.regression import regress
+from posstats.analysis.rules import decide, load_rules
 from posstats.block.image_pairs import stereo_models
-from posstats.correction import corrected, predicted_errors
 from posstats.geometry.stereo.parallax import model_rms_px
-from posstats.regression import regress
-from posstats.selection import decide, load_rules
-from posstats.validation import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax
 
 
 def block(n_strips=3, **errors):

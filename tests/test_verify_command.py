@@ -20,7 +20,8 @@ from archive_documents import (
 from click.testing import CliRunner
 from small_scenario import small_block
 
-from posstats.analysis import Settings, analyse
+from posstats.analysis.results import results
+from posstats.analysis.steps import Settings, analyse
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.plain_values import to_json
@@ -30,7 +31,6 @@ from posstats.reports.archive_file import LARGEST_BYTES
 from posstats.reports.cli import cli
 from posstats.reports.recomputation import recompute
 from posstats.reports.verification_values import TOLERANCE
-from posstats.results import results
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

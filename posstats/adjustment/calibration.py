@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
+from posstats.analysis.correction import corrected
 from posstats.block.model import Block, Orientations
-from posstats.correction import corrected
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.text_table import sha256
 from posstats.formats.toml_table import (

@@ -19,12 +19,12 @@ from posstats.adjustment.significance import HIGH_CORRELATION
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.steps import Adjustment
 from posstats.adjustment.weights import variance_factors
+from posstats.analysis.rows import accuracy_row, block_row, image_rows, residual_rows
 from posstats.formats.adjusted_writing import write_adjusted, write_points
 from posstats.numerics.bundle.parameters import UNITS
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, wrapped
 from posstats.plain_values import plain, versions
-from posstats.result_rows import accuracy_row, block_row, image_rows, residual_rows
 
 _Floats = NDArray[np.float64]
 Row = dict[str, Any]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from posstats.analysis import Analysis, Progress, Settings, analyse
+from posstats.analysis.steps import Analysis, Progress, Settings, analyse
 from posstats.block.image_pairs import StereoModels
 from posstats.block.model import Block, Orientations
 from posstats.geometry.stereo.parallax import block_statistics, model_rms_px

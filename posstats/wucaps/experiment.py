@@ -7,12 +7,12 @@ from typing import Literal, get_args
 import numpy as np
 
 from posstats.adjustment.calibration import Calibration, apply_calibration, calibration_of
-from posstats.analysis import Analysis, Settings, analyse
+from posstats.analysis.rules import Decision
+from posstats.analysis.steps import Analysis, Settings, analyse
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.errors import UndeterminedError
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.selection import Decision
 from posstats.wucaps.adjustments import (
     CONTROLS,
     Control,

@@ -5,11 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats.angle_errors import AngleErrors
-from posstats.block.image_pairs import StereoModels
-from posstats.correction import axis_of, corrected, fitted_values
-from posstats.geometry.stereo.parallax import model_rms_px
-from posstats.regression import (
+from posstats.analysis.angle_errors import AngleErrors
+from posstats.analysis.correction import axis_of, corrected, fitted_values
+from posstats.analysis.regression import (
     BLOCK_SCOPE,
     AngleSample,
     ConstantFit,
@@ -17,7 +15,9 @@ from posstats.regression import (
     FitError,
     angle_sample,
 )
-from posstats.selection import Decision, OutOfSampleParallax
+from posstats.analysis.rules import Decision, OutOfSampleParallax
+from posstats.block.image_pairs import StereoModels
+from posstats.geometry.stereo.parallax import model_rms_px
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.intp]

@@ -10,11 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats import __version__
-from posstats.analysis import Analysis
-from posstats.geometry.stereo.parallax import NOTICEABLE, block_statistics
-from posstats.geometry.stereo.relative_orientation import RelativeOrientation
-from posstats.plain_values import RESULTS_SCHEMA, plain, versions
-from posstats.result_rows import (
+from posstats.analysis.rows import (
     accuracy_row,
     angle_error_rows,
     angle_error_summary_rows,
@@ -30,6 +26,10 @@ from posstats.result_rows import (
     residual_rows,
     selection_rows,
 )
+from posstats.analysis.steps import Analysis
+from posstats.geometry.stereo.parallax import NOTICEABLE, block_statistics
+from posstats.geometry.stereo.relative_orientation import RelativeOrientation
+from posstats.plain_values import RESULTS_SCHEMA, plain, versions
 
 Row = dict[str, Any]
 

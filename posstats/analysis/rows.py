@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle
-from posstats.analysis import Analysis, FrameAnalysis
+from posstats.analysis.regression import AngleRegression
+from posstats.analysis.steps import Analysis, FrameAnalysis
 from posstats.block.model import Block
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_accuracy
 from posstats.geometry.ground.footprints import footprints
 from posstats.geometry.stereo.parallax import strip_statistics
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
-from posstats.regression import AngleRegression
 from posstats.statistics.drift import DriftFit
 
 _Floats = NDArray[np.float64]

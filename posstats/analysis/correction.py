@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from posstats.analysis.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit
+from posstats.analysis.rules import Decision, chosen_fits
 from posstats.block.model import Orientations
 from posstats.numerics.kernels.rotation import (
     ANGLE_NAMES,
@@ -12,8 +14,6 @@ from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_vector,
 )
-from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit
-from posstats.selection import Decision, chosen_fits
 
 _Floats = NDArray[np.float64]
 _Ids = NDArray[np.object_]

@@ -9,9 +9,15 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from posstats.analysis.regression import (
+    BLOCK_SCOPE,
+    AngleRegression,
+    ConstantFit,
+    DriftFit,
+    FitKind,
+)
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.toml_section import nearest
-from posstats.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit, FitKind
 
 Form = Literal["none", "constant", "linear"]
 
@@ -103,7 +109,7 @@ def load_rules(name_or_path: str | Path) -> RuleSet:
     PosstatsError
         If there is no such rule set or file.
     """
-    folder = files("posstats") / "rules"
+    folder = files("posstats.analysis") / "rule_sets"
     known = sorted(Path(entry.name).stem for entry in folder.iterdir() if entry.name[0] != "_")
     name = str(name_or_path)
     if name in known:

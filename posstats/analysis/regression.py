@@ -12,7 +12,7 @@ from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.statistics.drift import ConstantFit, DriftFit, FitError, fit_constant, fit_drift
 
 if TYPE_CHECKING:
-    from posstats.angle_errors import AngleErrors
+    from posstats.analysis.angle_errors import AngleErrors
 
 __all__ = [
     "BLOCK_SCOPE", "AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress",

@@ -15,6 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle
+from posstats.analysis.observability import (
+    UNDETERMINED_SHARE,
+    EstimatedAngles,
+    Observability,
+    observability,
+    weak_prior_rad,
+)
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
@@ -26,13 +33,6 @@ from posstats.numerics.kernels.rotation import (
     skew,
     vector_from_rotation,
     wrapped,
-)
-from posstats.observability import (
-    UNDETERMINED_SHARE,
-    EstimatedAngles,
-    Observability,
-    observability,
-    weak_prior_rad,
 )
 
 _Floats = NDArray[np.float64]

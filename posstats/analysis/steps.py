@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle, adjust_imu_free
-from posstats.angle_errors import (
+from posstats.analysis.angle_errors import (
     AngleErrors,
     ErrorSource,
     adjusted_errors,
@@ -17,17 +17,17 @@ from posstats.angle_errors import (
     coplanarity_errors,
     in_camera_frame,
 )
+from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.out_of_sample import out_of_sample_parallax
+from posstats.analysis.regression import BLOCK_SCOPE, AngleRegression, regress
+from posstats.analysis.rules import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
-from posstats.correction import corrected, predicted_errors
 from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.regression import BLOCK_SCOPE, AngleRegression, regress
-from posstats.selection import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
-from posstats.validation import out_of_sample_parallax
 
 _Floats = NDArray[np.float64]
 Scope = Literal["block", "strip"]

@@ -1,0 +1,1 @@
+"""From a block to its results: angle errors, regression, rules, correction."""
