@@ -15,9 +15,9 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from posstats.analysis.results import results
-from posstats.experiment.areas import AREAS, area_scenario, run_area, true_causes
-from posstats.experiment.findings import CRITERIA, AreaFindings, find
-from posstats.experiment.seeds import write
+from posstats.papers.drift.areas import AREAS, area_scenario, run_area, true_causes
+from posstats.papers.drift.findings import CRITERIA, AreaFindings, find
+from posstats.papers.drift.seeds import write
 
 STORED = Path(__file__).parents[1] / "posstats" / "experiment" / "seeds.csv"
 

@@ -17,11 +17,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from posstats.wucaps.adjustments import CONTROLS
-from posstats.wucaps.experiment import run_situation
-from posstats.wucaps.findings import CRITERIA, SituationFindings, find
-from posstats.wucaps.seeds import write
-from posstats.wucaps.situations import SITUATIONS, Situation
+from posstats.papers.wucaps.adjustments import CONTROLS
+from posstats.papers.wucaps.experiment import run_situation
+from posstats.papers.wucaps.findings import CRITERIA, SituationFindings, find
+from posstats.papers.wucaps.seeds import write
+from posstats.papers.wucaps.situations import SITUATIONS, Situation
 
 STORED = Path(__file__).parents[1] / "posstats" / "wucaps" / "seeds.csv"
 

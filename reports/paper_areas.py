@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.errors import PosstatsError
-from posstats.experiment.areas import AREAS, TrueCauses, run_area, true_causes
+from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
 from . import figures, paper_figures, tables
 from .analysis_folder import write_analysis

@@ -6,10 +6,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from posstats import __version__
-from posstats.experiment.comparison import TABLE3_AREA
-from posstats.experiment.findings import CRITERIA
-from posstats.experiment.reproduction import Reproduction, reproduction
-from posstats.experiment.seeds import repeated, share
+from posstats.papers.drift.comparison import TABLE3_AREA
+from posstats.papers.drift.findings import CRITERIA
+from posstats.papers.drift.reproduction import Reproduction, reproduction
+from posstats.papers.drift.seeds import repeated, share
 
 from . import paper_document
 from .output import staged_folder

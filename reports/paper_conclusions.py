@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from posstats.experiment.comparison import TABLE3_AREA
-from posstats.experiment.findings import AreaFindings
-from posstats.experiment.published import printed_gain
-from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated, share, share_interval
+from posstats.papers.drift.comparison import TABLE3_AREA
+from posstats.papers.drift.findings import AreaFindings
+from posstats.papers.drift.published import printed_gain
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.papers.drift.seeds import repeated, share, share_interval
 
 from . import format as fmt
 from .results_view import Results, first

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from posstats import __version__
-from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.papers.drift.seeds import repeated
 
 from . import format as fmt
 from .document import SIMULATED, ReportDocument, numbered

@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from posstats.experiment.comparison import TABLE3_AREA
-from posstats.experiment.findings import ALPHA, STRIP
-from posstats.experiment.published import (
+from posstats.papers.drift.comparison import TABLE3_AREA
+from posstats.papers.drift.findings import ALPHA, STRIP
+from posstats.papers.drift.published import (
     consistent_residual_df,
     implied_scatter,
     impossible_vertical_rmse,
     published,
     recomputed,
 )
-from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.papers.drift.seeds import repeated
 
 from . import format as fmt
 from . import paper_tables

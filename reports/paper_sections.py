@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from posstats.experiment.areas import area_scenario, area_seed
-from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated
+from posstats.papers.drift.areas import area_scenario, area_seed
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.papers.drift.seeds import repeated
 
 from . import format as fmt
 from . import paper_tables as tables

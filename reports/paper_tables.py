@@ -3,10 +3,10 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from posstats.experiment.comparison import TABLE3_AREA, Compared
-from posstats.experiment.published import recomputed
-from posstats.experiment.reproduction import Reproduction
-from posstats.experiment.seeds import repeated, share, share_interval
+from posstats.papers.drift.comparison import TABLE3_AREA, Compared
+from posstats.papers.drift.published import recomputed
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.papers.drift.seeds import repeated, share, share_interval
 from posstats.synthetic import Scenario
 
 from . import format as fmt

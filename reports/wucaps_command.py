@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from posstats import __version__
+from posstats.papers.wucaps.adjustments import CONTROLS
+from posstats.papers.wucaps.experiment import Row, SituationRun, run_situation
+from posstats.papers.wucaps.findings import CRITERIA
+from posstats.papers.wucaps.reproduction import Reproduction, reproduction
+from posstats.papers.wucaps.seeds import pooled, repeated, share
+from posstats.papers.wucaps.situations import SITUATIONS, Situation
 from posstats.plain_values import versions
-from posstats.wucaps.adjustments import CONTROLS
-from posstats.wucaps.experiment import Row, SituationRun, run_situation
-from posstats.wucaps.findings import CRITERIA
-from posstats.wucaps.reproduction import Reproduction, reproduction
-from posstats.wucaps.seeds import pooled, repeated, share
-from posstats.wucaps.situations import SITUATIONS, Situation
 
 from . import wucaps_document
 from .output import staged_folder

@@ -3,16 +3,16 @@
 from collections.abc import Callable
 
 from posstats.geometry.stereo.parallax import NOTICEABLE
-from posstats.wucaps.findings import (
+from posstats.papers.wucaps.findings import (
     LESS,
     MOST_HORIZONTAL,
     MOST_VERTICAL,
     RECOMMENDED,
     SituationFindings,
 )
-from posstats.wucaps.reproduction import Reproduction
-from posstats.wucaps.seeds import repeated, share
-from posstats.wucaps.situations import Situation
+from posstats.papers.wucaps.reproduction import Reproduction
+from posstats.papers.wucaps.seeds import repeated, share
+from posstats.papers.wucaps.situations import Situation
 
 from . import format as fmt
 from .paper_conclusions import Conclusion

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from posstats import __version__
-from posstats.wucaps.findings import RECOMMENDED
-from posstats.wucaps.reproduction import Reproduction
-from posstats.wucaps.seeds import repeated
+from posstats.papers.wucaps.findings import RECOMMENDED
+from posstats.papers.wucaps.reproduction import Reproduction
+from posstats.papers.wucaps.seeds import repeated
 
 from . import format as fmt
 from .document import SIMULATED, ReportDocument, numbered

@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from posstats.wucaps.adjustments import CONTROLS, Control, control_points
-from posstats.wucaps.experiment import METHODS as ALL_METHODS
-from posstats.wucaps.experiment import Method, Row, SituationRun
-from posstats.wucaps.findings import RECOMMENDED
-from posstats.wucaps.reproduction import Reproduction
+from posstats.papers.wucaps.adjustments import CONTROLS, Control, control_points
+from posstats.papers.wucaps.experiment import METHODS as ALL_METHODS
+from posstats.papers.wucaps.experiment import Method, Row, SituationRun
+from posstats.papers.wucaps.findings import RECOMMENDED
+from posstats.papers.wucaps.reproduction import Reproduction
 
 from . import figure_style as style
 from . import format as fmt

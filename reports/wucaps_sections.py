@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from posstats.wucaps.findings import RECOMMENDED
-from posstats.wucaps.reproduction import Reproduction
-from posstats.wucaps.seeds import pooled, repeated, share
-from posstats.wucaps.situations import flight_seed
+from posstats.papers.wucaps.findings import RECOMMENDED
+from posstats.papers.wucaps.reproduction import Reproduction
+from posstats.papers.wucaps.seeds import pooled, repeated, share
+from posstats.papers.wucaps.situations import flight_seed
 
 from . import format as fmt
 from . import statistics_tables, wucaps_figures

@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from posstats.numerics.bundle.parameters import BORESIGHT
+from posstats.papers.wucaps.adjustments import CONTROLS
+from posstats.papers.wucaps.experiment import Row, SituationRun
+from posstats.papers.wucaps.findings import CRITERIA
+from posstats.papers.wucaps.measures import Measures
+from posstats.papers.wucaps.reproduction import Reproduction
+from posstats.papers.wucaps.seeds import pooled, repeated, share
+from posstats.papers.wucaps.situations import situation_scenario
 from posstats.synthetic import Scenario
-from posstats.wucaps.adjustments import CONTROLS
-from posstats.wucaps.experiment import Row, SituationRun
-from posstats.wucaps.findings import CRITERIA
-from posstats.wucaps.measures import Measures
-from posstats.wucaps.reproduction import Reproduction
-from posstats.wucaps.seeds import pooled, repeated, share
-from posstats.wucaps.situations import situation_scenario
 
 from . import format as fmt
 from .tables import Column, Table, text_column

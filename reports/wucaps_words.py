@@ -1,8 +1,8 @@
 """How the report on the second paper calls its situations, methods and control points."""
 
-from posstats.wucaps.adjustments import Control
-from posstats.wucaps.experiment import Method
-from posstats.wucaps.situations import Situation
+from posstats.papers.wucaps.adjustments import Control
+from posstats.papers.wucaps.experiment import Method
+from posstats.papers.wucaps.situations import Situation
 
 from .format import NARROW_SPACE
 

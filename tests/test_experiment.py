@@ -10,9 +10,9 @@ from helpers import shared_path
 from scipy import optimize, stats
 
 from posstats.block.image_pairs import stereo_models
-from posstats.experiment.areas import AREAS, area_scenario, area_seed, true_causes
-from posstats.experiment.findings import CRITERIA
-from posstats.experiment.published import (
+from posstats.papers.drift.areas import AREAS, area_scenario, area_seed, true_causes
+from posstats.papers.drift.findings import CRITERIA
+from posstats.papers.drift.published import (
     consistent_residual_df,
     implied_scatter,
     impossible_vertical_rmse,
@@ -20,7 +20,7 @@ from posstats.experiment.published import (
     published,
     recomputed,
 )
-from posstats.experiment.seeds import repeated, share, share_interval, write
+from posstats.papers.drift.seeds import repeated, share, share_interval, write
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError
 

@@ -17,10 +17,10 @@ from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain,
 
 from posstats.block.image_pairs import stereo_models
 from posstats.errors import PosstatsError
-from posstats.experiment.areas import AREAS, area_scenario, area_seed, true_causes
-from posstats.experiment.findings import AreaFindings, find
-from posstats.experiment.published import published
-from posstats.experiment.seeds import repeated
+from posstats.papers.drift.areas import AREAS, area_scenario, area_seed, true_causes
+from posstats.papers.drift.findings import AreaFindings, find
+from posstats.papers.drift.published import published
+from posstats.papers.drift.seeds import repeated
 from posstats.reports import paper_areas, paper_command
 from posstats.reports.cli import cli
 from posstats.reports.output import staged_folder

@@ -15,11 +15,16 @@ from posstats.adjustment.settings import DriftPriors
 from posstats.block.image_pairs import stereo_models
 from posstats.numerics.bundle.parameters import BORESIGHT
 from posstats.numerics.kernels.rotation import vector_from_rotation, wrapped
-from posstats.wucaps.adjustments import CONTROLS, adjusted_block, control_points, pos_parameters
-from posstats.wucaps.findings import CRITERIA, LESS, RECOMMENDED, SituationFindings
-from posstats.wucaps.measures import measured
-from posstats.wucaps.seeds import pooled, repeated, share, write
-from posstats.wucaps.situations import (
+from posstats.papers.wucaps.adjustments import (
+    CONTROLS,
+    adjusted_block,
+    control_points,
+    pos_parameters,
+)
+from posstats.papers.wucaps.findings import CRITERIA, LESS, RECOMMENDED, SituationFindings
+from posstats.papers.wucaps.measures import measured
+from posstats.papers.wucaps.seeds import pooled, repeated, share, write
+from posstats.papers.wucaps.situations import (
     SITUATIONS,
     flight_seed,
     simulated,

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
 
-from posstats.wucaps.findings import RECOMMENDED
-from posstats.wucaps.seeds import repeated
-from posstats.wucaps.situations import SITUATIONS
+from posstats.papers.wucaps.findings import RECOMMENDED
+from posstats.papers.wucaps.seeds import repeated
+from posstats.papers.wucaps.situations import SITUATIONS
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

@@ -359,7 +359,7 @@ def shipped_scenario(name: str) -> Scenario:
 
 
 def _shipped(name: str) -> Traversable:
-    return files("posstats") / "scenarios" / f"{name}.toml"
+    return files("posstats.synthetic") / "scenarios" / f"{name}.toml"
 
 
 def _toml(content: bytes, name: str) -> dict[str, Any]:

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from posstats.geometry.stereo.parallax import NOTICEABLE
-from posstats.wucaps.adjustments import CONTROLS, Control
-from posstats.wucaps.experiment import SituationRun
-from posstats.wucaps.situations import Situation
+from posstats.papers.wucaps.adjustments import CONTROLS, Control
+from posstats.papers.wucaps.experiment import SituationRun
+from posstats.papers.wucaps.situations import Situation
 
 RECOMMENDED: dict[Situation, Control] = {"flat": "corners", "mountain": "centre"}
 """The control points that the paper recommends."""

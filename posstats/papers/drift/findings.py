@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from posstats.experiment.areas import TrueCauses
 from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
+from posstats.papers.drift.areas import TrueCauses
 from posstats.synthetic import Scenario
 
 Results = Mapping[str, Any]

@@ -13,15 +13,15 @@ from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.errors import UndeterminedError
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.wucaps.adjustments import (
+from posstats.papers.wucaps.adjustments import (
     CONTROLS,
     Control,
     Unknowns,
     adjusted_block,
     pos_parameters,
 )
-from posstats.wucaps.measures import Measures, measured
-from posstats.wucaps.situations import DEFAULT_SEED, Flights, Situation, simulated
+from posstats.papers.wucaps.measures import Measures, measured
+from posstats.papers.wucaps.situations import DEFAULT_SEED, Flights, Situation, simulated
 
 Method = Literal[
     "pos",

@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import get_type_hints
 
-from posstats.experiment.findings import AreaFindings
+from posstats.papers.drift.findings import AreaFindings
 
 _TYPES = get_type_hints(AreaFindings)
 
@@ -20,7 +20,7 @@ _TYPES = get_type_hints(AreaFindings)
 @lru_cache(maxsize=1)
 def repeated() -> dict[int, tuple[AreaFindings, ...]]:
     """Findings by area, one per seed, in the order of the seeds."""
-    text = (files("posstats") / "experiment" / "seeds.csv").read_text(encoding="utf-8")
+    text = (files("posstats.papers.drift") / "seeds.csv").read_text(encoding="utf-8")
     found: dict[int, list[AreaFindings]] = {}
     for row in csv.DictReader(text.splitlines()):
         each = AreaFindings(**{name: _TYPES[name](row[name]) for name in _TYPES})

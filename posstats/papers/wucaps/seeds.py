@@ -13,8 +13,8 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from posstats.wucaps.findings import SituationFindings
-from posstats.wucaps.situations import Situation
+from posstats.papers.wucaps.findings import SituationFindings
+from posstats.papers.wucaps.situations import Situation
 
 _TYPES = get_type_hints(SituationFindings)
 
@@ -22,7 +22,7 @@ _TYPES = get_type_hints(SituationFindings)
 @lru_cache(maxsize=1)
 def repeated() -> dict[Situation, tuple[SituationFindings, ...]]:
     """Findings by situation, one per seed, in the order of the seeds."""
-    text = (files("posstats") / "wucaps" / "seeds.csv").read_text(encoding="utf-8")
+    text = (files("posstats.papers.wucaps") / "seeds.csv").read_text(encoding="utf-8")
     found: dict[Situation, list[SituationFindings]] = {}
     for row in csv.DictReader(text.splitlines()):
         values: dict[str, Any] = {

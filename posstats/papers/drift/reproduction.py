@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from posstats.experiment.areas import TrueCauses, area_scenario
-from posstats.experiment.comparison import Compared, compare
-from posstats.experiment.findings import AreaFindings, find
+from posstats.papers.drift.areas import TrueCauses, area_scenario
+from posstats.papers.drift.comparison import Compared, compare
+from posstats.papers.drift.findings import AreaFindings, find
 
 Results = Mapping[str, Any]
 

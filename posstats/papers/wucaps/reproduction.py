@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from posstats.wucaps.experiment import SituationRun
-from posstats.wucaps.findings import SituationFindings, find
-from posstats.wucaps.situations import Situation
+from posstats.papers.wucaps.experiment import SituationRun
+from posstats.papers.wucaps.findings import SituationFindings, find
+from posstats.papers.wucaps.situations import Situation
 
 
 @dataclass(frozen=True, eq=False)

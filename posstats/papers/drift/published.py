@@ -140,6 +140,6 @@ def impossible_vertical_rmse() -> list[tuple[Row, float]]:
 
 @lru_cache(maxsize=1)
 def _content() -> dict[str, Any]:
-    text = (files("posstats") / "experiment" / "published.toml").read_text(encoding="utf-8")
+    text = (files("posstats.papers.drift") / "published.toml").read_text(encoding="utf-8")
     content: dict[str, Any] = tomllib.loads(text)
     return content

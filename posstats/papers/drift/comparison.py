@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from posstats.experiment.areas import AREAS, area_scenario
-from posstats.experiment.findings import STRIP, only_row
-from posstats.experiment.published import Row, published
+from posstats.papers.drift.areas import AREAS, area_scenario
+from posstats.papers.drift.findings import STRIP, only_row
+from posstats.papers.drift.published import Row, published
 from posstats.synthetic import Scenario
 
 Basis = Literal["given", "fitted", "predicted"]

@@ -1,0 +1,1 @@
+"""The experiments of two papers, repeated on simulated blocks."""
