@@ -18,9 +18,10 @@ from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values, document_id
 from posstats.errors import PosstatsError
 
-from . import acceptance_words, tables
-from . import format as fmt
+from . import acceptance_words
 from .archive_pdf import Attachment
+from .document import format as fmt
+from .document import table as tables
 from .results_view import Results
 
 Values = dict[str, Any]

@@ -7,16 +7,16 @@ from typing import Any
 from . import acceptance_tables as tables
 from . import acceptance_units as units
 from . import acceptance_words as wording
-from . import format as fmt
 from .acceptance_figures import draw
 from .acceptance_sections import parts
 from .acceptance_words import Words
 from .cjk import is_cjk
-from .document import Section, numbered
+from .document import format as fmt
+from .document.key_figure import KeyFigure
+from .document.numbering import Section, numbered
+from .document.table import Table
 from .figure_style import shortened
-from .key_figures import KeyFigure
 from .results_view import Results
-from .tables import Table
 
 PARTIES = ("inspector", "contractor", "client")
 STATED = ("title", "number", "client", "contractor", "inspector", "flight", "flight_date", "sensor",

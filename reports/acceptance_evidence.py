@@ -6,10 +6,18 @@ from typing import Any
 from posstats.acceptance.evidence import PARALLAX_KEYS
 
 from . import acceptance_units as units
-from . import format as fmt
 from .acceptance_words import Words
+from .document import format as fmt
+from .document.table import (
+    Column,
+    Table,
+    count_column,
+    number_column,
+    p_column,
+    prose_column,
+    text_column,
+)
 from .results_view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
-from .tables import Column, Table, count_column, number_column, p_column, prose_column, text_column
 
 RELATIVE = "independent_px"
 SHOWN_DECISIONS = 40

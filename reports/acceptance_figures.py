@@ -11,9 +11,9 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from . import acceptance_units as units
 from . import cjk, figure_plan, figure_regression
 from . import figure_style as style
-from . import format as fmt
 from .acceptance_evidence import parallax_series
 from .acceptance_words import Words
+from .document import format as fmt
 from .figure_parallax import Bars, bar_figure
 from .plan_view import (
     FloatArray,

@@ -10,8 +10,8 @@ from posstats.errors import PosstatsError
 
 from . import acceptance_templates, cjk, fonts
 from .acceptance_document import build
+from .document.catalogue import catalogue
 from .garbage import garbage_kept
-from .messages import catalogue
 
 SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn

@@ -5,9 +5,9 @@ from typing import Any
 
 from . import acceptance_evidence as evidence
 from . import acceptance_tables as tables
-from . import format as fmt
 from .acceptance_words import Words, is_borderline
-from .content import Bullets, Content, Paragraph, Part, filled, known
+from .document import format as fmt
+from .document.content import Bullets, Content, Paragraph, Part, filled, known
 from .figure_style import Drawing
 from .results_view import Results, rows
 

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import acceptance_units as units
-from . import format as fmt
 from .acceptance_units import Row
 from .acceptance_words import Words, evidence, product
+from .document import format as fmt
+from .document.table import Column, Table, count_column, p_column, prose_column, text_column
 from .results_view import Results
 from .statistics_tables import pairs
-from .tables import Column, Table, count_column, p_column, prose_column, text_column
 
 Acceptance = Mapping[str, Any]
 

@@ -29,7 +29,7 @@ from markupsafe import Markup
 from posstats.errors import PosstatsError
 
 from . import html as pages
-from .messages import Catalogue
+from .document.catalogue import Catalogue
 
 PAGE = "acceptance.html.j2"
 LOGOS = ("logo.svg", "logo.png", "logo.jpg", "logo.jpeg")

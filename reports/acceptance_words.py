@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import acceptance_units as units
-from . import format as fmt
 from .acceptance_units import Lengths, Row
-from .messages import Catalogue, catalogue
+from .document import format as fmt
+from .document.catalogue import Catalogue, catalogue
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip

@@ -1,10 +1,10 @@
 """The document of the report on an adjustment: what it says around its tables and figures."""
 
 from . import adjustment_figures, adjustment_tables, adjustment_verdict, statistics_tables
-from . import format as fmt
 from .adjustment_view import CONTROL, DEFORMATION, DRIFTS
-from .content import Bullets, Content, Paragraph, Part, filled, known
-from .document import SIMULATED, ReportDocument, numbered
+from .document import format as fmt
+from .document.content import Bullets, Content, Paragraph, Part, filled, known
+from .document.numbering import SIMULATED, ReportDocument, numbered
 from .figure_style import Drawing
 from .results_view import Results
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .figure_plan import difference_plan
 from .plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
 from .results_view import Results, Row, rows, strips

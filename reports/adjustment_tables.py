@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 
-from . import format as fmt
 from .adjustment_view import GROUPS, KINDS, parameter_words, shown_unit
-from .results_view import Results, Row, rows, scope_label
-from .tables import (
+from .document import format as fmt
+from .document.table import (
     Column,
     Table,
     aligned_column,
@@ -15,6 +14,7 @@ from .tables import (
     prose_column,
     text_column,
 )
+from .results_view import Results, Row, rows, scope_label
 
 SHOWN_BLUNDERS = 25
 SHOWN_POINTS = 60

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from . import format as fmt
 from .adjustment_view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
-from .key_figures import KeyFigure
+from .document import format as fmt
+from .document.key_figure import KeyFigure
 from .results_view import Results, Row, first, rows
 
 DOUBTFUL_P = 0.05

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from . import format as fmt
+from .document import format as fmt
 from .results_view import Results, Row, rows
 
 _AXES = {"x": "X", "y": "Y", "z": "Z"}

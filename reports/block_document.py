@@ -1,9 +1,9 @@
 """The document of a block's report."""
 
 from . import figures, sections
-from .document import SIMULATED, ReportDocument, numbered
+from .document.key_figure import key_figures
+from .document.numbering import SIMULATED, ReportDocument, numbered
 from .figure_style import Drawing
-from .key_figures import key_figures
 from .results_view import Results
 from .verdict import is_coarse, paragraph
 

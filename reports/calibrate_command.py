@@ -13,7 +13,7 @@ from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 
 from . import adjustment_verdict
-from . import format as fmt
+from .document import format as fmt
 from .progress import progress_bar
 from .summary import WIDTH
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .results_view import (
     FIXED,
     GROUND_ANGLES,

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .plan_view import (
     FloatArray,
     PlanView,

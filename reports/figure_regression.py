@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .results_view import Results, Row, angles, decided_by_strip, first, rows, setting
 
 FloatArray = npt.NDArray[np.float64]

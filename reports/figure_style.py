@@ -13,7 +13,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
-from . import format as fmt
+from .document import format as fmt
 from .fonts import FAMILY
 from .svg import embeddable
 

@@ -9,9 +9,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from . import fonts
-from .document import ReportDocument
+from .document.numbering import ReportDocument
+from .document.table import Column
 from .figure_style import Drawing
-from .tables import Column
 
 TEMPLATE = "report.html.j2"
 

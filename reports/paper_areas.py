@@ -12,8 +12,9 @@ from typing import Any
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
-from . import figures, paper_figures, tables
+from . import figures, paper_figures
 from .analysis_folder import write_analysis
+from .document import table as tables
 from .figure_style import Drawing
 from .progress import progress_bar
 

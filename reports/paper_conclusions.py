@@ -9,7 +9,7 @@ from posstats.papers.drift.published import printed_gain
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated, share, share_interval
 
-from . import format as fmt
+from .document import format as fmt
 from .results_view import Results, first
 
 ORTHOPHOTO_H_M = 5.0

@@ -6,9 +6,9 @@ from posstats import __version__
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from . import format as fmt
-from .document import SIMULATED, ReportDocument, numbered
-from .key_figures import KeyFigure
+from .document import format as fmt
+from .document.key_figure import KeyFigure
+from .document.numbering import SIMULATED, ReportDocument, numbered
 from .paper_conclusions import Conclusion
 from .paper_sections import Figures, opening, sections
 

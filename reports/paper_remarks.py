@@ -14,9 +14,9 @@ from posstats.papers.drift.published import (
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from . import format as fmt
 from . import paper_tables
-from .content import Bullets, Labelled, Paragraph, Part
+from .document import format as fmt
+from .document.content import Bullets, Labelled, Paragraph, Part
 from .results_view import first, rows
 
 _SAME_DIMENSIONS = (

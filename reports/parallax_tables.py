@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from . import format as fmt
+from .document import format as fmt
+from .document.table import Column, Table, aligned_column, count_column, number_column, text_column
 from .results_view import (
     FIXED,
     METHODS,
@@ -15,7 +16,6 @@ from .results_view import (
     strips,
     strips_with_models,
 )
-from .tables import Column, Table, aligned_column, count_column, number_column, text_column
 
 SHOWN_MODELS = 15
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, Transform, blended_transform_factory
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .results_view import Row
 
 FloatArray = npt.NDArray[np.float64]

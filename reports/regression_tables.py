@@ -2,9 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from . import format as fmt
-from .results_view import Results, Row, decided_by_strip, first, rows, scope_label
-from .tables import (
+from .document import format as fmt
+from .document.table import (
     Column,
     Table,
     count_column,
@@ -13,6 +12,7 @@ from .tables import (
     prose_column,
     text_column,
 )
+from .results_view import Results, Row, decided_by_strip, first, rows, scope_label
 
 SHOWN_DECISIONS = 20
 SHOWN_STRIP_LINES = 18  # from which lines strip by strip fill pages and tell no more

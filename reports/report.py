@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from . import block_document, figures, html, tables
+from . import block_document, figures, html
 from . import pdf as pdf_writer
-from .document import ReportDocument
+from .document import table as tables
+from .document.numbering import ReportDocument
 from .garbage import garbage_kept
 from .results_view import Results
 

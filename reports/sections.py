@@ -1,8 +1,8 @@
 """What a block's report says, section by section, around its tables and figures."""
 
-from . import format as fmt
 from . import parallax_tables, regression_tables, statistics_tables
-from .content import Bullets, Content, Paragraph, Part, filled, known
+from .document import format as fmt
+from .document.content import Bullets, Content, Paragraph, Part, filled, known
 from .figure_style import Drawing
 from .results_view import Results, decided_by_strip, has_mm, rows, setting
 

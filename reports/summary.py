@@ -3,8 +3,8 @@
 import textwrap
 from collections.abc import Iterator
 
-from . import format as fmt
 from . import verdict
+from .document import format as fmt
 from .results_view import Results, decided_by_strip, rows
 
 WIDTH = 88

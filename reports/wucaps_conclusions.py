@@ -14,7 +14,7 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import repeated, share
 from posstats.papers.wucaps.situations import Situation
 
-from . import format as fmt
+from .document import format as fmt
 from .paper_conclusions import Conclusion
 from .wucaps_words import BLOCKS, SITUATIONS, TERRAIN
 

@@ -7,9 +7,9 @@ from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import repeated
 
-from . import format as fmt
-from .document import SIMULATED, ReportDocument, numbered
-from .key_figures import KeyFigure
+from .document import format as fmt
+from .document.key_figure import KeyFigure
+from .document.numbering import SIMULATED, ReportDocument, numbered
 from .paper_conclusions import Conclusion
 from .wucaps_sections import opening, sections
 from .wucaps_words import CONTROL, TERRAIN

@@ -13,7 +13,7 @@ from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 
 from . import figure_style as style
-from . import format as fmt
+from .document import format as fmt
 from .wucaps_words import CONTROL, METHODS, SITUATIONS
 
 _LOOK: dict[Control | None, tuple[str, str]] = {

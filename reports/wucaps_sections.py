@@ -7,12 +7,12 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import flight_seed
 
-from . import format as fmt
 from . import statistics_tables, wucaps_figures
 from . import wucaps_tables as tables
-from .content import Bullets, Content, Paragraph, Part
+from .document import format as fmt
+from .document.content import Bullets, Content, Paragraph, Part
+from .document.table import Table, prose_column, text_column
 from .paper_conclusions import Conclusion
-from .tables import Table, prose_column, text_column
 from .wucaps_words import CONTROL, SITUATIONS, TERRAIN
 
 _SIDES = ("horizontal", "vertical")

@@ -14,8 +14,8 @@ from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import situation_scenario
 from posstats.synthetic import Scenario
 
-from . import format as fmt
-from .tables import Column, Table, text_column
+from .document import format as fmt
+from .document.table import Column, Table, text_column
 from .wucaps_words import CONTROL, METHOD_NOTES, METHODS, SITUATIONS
 
 MICROMETRE = fmt.Unit("µm", 1e3)  # of values in mm

@@ -17,7 +17,7 @@ from posstats.reports.acceptance_data import _filled
 from posstats.reports.acceptance_units import Lengths, margin
 from posstats.reports.cjk import faces
 from posstats.reports.cli import cli
-from posstats.reports.format import METRE, MINUS
+from posstats.reports.document.format import METRE, MINUS
 
 CONTRACT = """
 extends = "asprs-2024"

@@ -12,7 +12,7 @@ from posstats.acceptance.evidence import ORIENTATIONS
 from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.errors import PosstatsError
 from posstats.reports import acceptance_words
-from posstats.reports.messages import MissingMessageError, catalogue
+from posstats.reports.document.catalogue import MissingMessageError, catalogue
 from posstats.statistics import samples
 
 ROOT = Path(__file__).resolve().parents[1]

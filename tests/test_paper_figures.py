@@ -13,8 +13,8 @@ from report_results import ANGLES, area_results
 from scipy import stats
 
 from posstats.reports import figure_parallax
+from posstats.reports.document.format import MICRORADIAN
 from posstats.reports.figure_regression import Panel, generalised, ordinary
-from posstats.reports.format import MICRORADIAN
 from posstats.reports.paper_figures import draw_area
 
 N_STRIPS, PER_STRIP = 3, 10

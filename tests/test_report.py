@@ -13,7 +13,8 @@ from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain,
 from report_results import area_results, assert_schema, coarse_results
 
 from posstats.errors import PosstatsError
-from posstats.reports import block_document, figures, html, pdf, tables, verdict
+from posstats.reports import block_document, figures, html, pdf, verdict
+from posstats.reports.document import table as tables
 from posstats.reports.plan_view import PlanView
 from posstats.reports.report import write_report
 from posstats.reports.summary import summary

@@ -2,7 +2,7 @@
 
 import pytest
 
-from posstats.reports import format as fmt
+from posstats.reports.document import format as fmt
 
 
 @pytest.mark.parametrize(

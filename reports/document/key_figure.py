@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from ..results_view import Results, Row, first, verdict
 from . import format as fmt
-from .results_view import Results, Row, first, verdict
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ..figure_style import Drawing
 from .content import Bullets, Content, Labelled, Paragraph, Part
-from .figure_style import Drawing
-from .key_figures import KeyFigure
-from .tables import Table
+from .key_figure import KeyFigure
+from .table import Table
 
 SIMULATED = "Simulated data"
 

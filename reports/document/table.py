@@ -7,8 +7,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
+from ..results_view import Results
 from . import format as fmt
-from .results_view import Results
 
 Align = Literal["left", "right", "prose"]
 SHORT_ROWS = 16

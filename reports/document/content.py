@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .figure_style import Drawing
-from .tables import Table
+from ..figure_style import Drawing
+from .table import Table
 
 
 @dataclass(frozen=True)
