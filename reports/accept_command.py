@@ -18,10 +18,10 @@ from .acceptance_data import Demand, assembled, embedded
 from .acceptance_writing import read_templates, write_document
 from .archive_pdf import Attachment
 from .archive_reading import MALFORMED
-from .output import staged_folder
-from .progress import Advance, progress_bar
+from .output.progress import Advance, progress_bar
+from .output.staged_folder import staged_folder
+from .output.timestamp import now
 from .summary import WIDTH
-from .timestamp import now
 
 BLOCK_TOML = "block.toml"
 EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}

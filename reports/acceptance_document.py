@@ -10,13 +10,13 @@ from . import acceptance_words as wording
 from .acceptance_figures import draw
 from .acceptance_sections import parts
 from .acceptance_words import Words
-from .cjk import is_cjk
 from .document import format as fmt
 from .document.key_figure import KeyFigure
 from .document.numbering import Section, numbered
 from .document.table import Table
-from .figure_style import shortened
+from .figures.style import shortened
 from .results_view import Results
+from .typefaces.cjk import is_cjk
 
 PARTIES = ("inspector", "contractor", "client")
 STATED = ("title", "number", "client", "contractor", "inspector", "flight", "flight_date", "sensor",

@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from . import acceptance_units as units
-from . import cjk, figure_plan, figure_regression
-from . import figure_style as style
+from . import figure_plan, figure_regression
 from .acceptance_evidence import parallax_series
 from .acceptance_words import Words
 from .document import format as fmt
 from .figure_parallax import Bars, bar_figure
-from .plan_view import (
+from .figures import style
+from .figures.plan_view import (
     FloatArray,
     PlanView,
     arrow_scale,
@@ -26,6 +26,7 @@ from .plan_view import (
     view_of,
 )
 from .results_view import Results, Row, angles, rows, setting, strips_with_models
+from .typefaces import cjk
 
 MAX_SHARE = 2.0  # of a limit; beyond it a value is drawn at the edge
 FEWEST = 5  # points that a histogram needs

@@ -8,10 +8,11 @@ from markupsafe import Markup
 
 from posstats.errors import PosstatsError
 
-from . import acceptance_templates, cjk, fonts
+from . import acceptance_templates
 from .acceptance_document import build
 from .document.catalogue import catalogue
 from .garbage import garbage_kept
+from .typefaces import cjk, fonts
 
 SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn

@@ -8,7 +8,7 @@ from . import acceptance_tables as tables
 from .acceptance_words import Words, is_borderline
 from .document import format as fmt
 from .document.content import Bullets, Content, Paragraph, Part, filled, known
-from .figure_style import Drawing
+from .figures.style import Drawing
 from .results_view import Results, rows
 
 FEW_POINTS = 30

@@ -5,7 +5,7 @@ from .adjustment_view import CONTROL, DEFORMATION, DRIFTS
 from .document import format as fmt
 from .document.content import Bullets, Content, Paragraph, Part, filled, known
 from .document.numbering import SIMULATED, ReportDocument, numbered
-from .figure_style import Drawing
+from .figures.style import Drawing
 from .results_view import Results
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from . import figure_style as style
 from .document import format as fmt
 from .figure_plan import difference_plan
-from .plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
+from .figures import style
+from .figures.plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
 from .results_view import Results, Row, rows, strips
 
 MAX_PLAN_IN = 3.4

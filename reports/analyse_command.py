@@ -8,11 +8,11 @@ from posstats.analysis.steps import Settings, analyse
 from posstats.formats.block_folder import read_block
 
 from .analysis_folder import write_analysis
-from .output import staged_folder
-from .progress import progress_bar
+from .output.progress import progress_bar
+from .output.staged_folder import staged_folder
+from .output.timestamp import now
 from .report import write_report
 from .summary import summary
-from .timestamp import now
 
 
 def analyse_block(

@@ -3,7 +3,7 @@
 from . import figures, sections
 from .document.key_figure import key_figures
 from .document.numbering import SIMULATED, ReportDocument, numbered
-from .figure_style import Drawing
+from .figures.style import Drawing
 from .results_view import Results
 from .verdict import is_coarse, paragraph
 

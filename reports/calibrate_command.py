@@ -14,7 +14,7 @@ from posstats.formats.block_folder import read_block
 
 from . import adjustment_verdict
 from .document import format as fmt
-from .progress import progress_bar
+from .output.progress import progress_bar
 from .summary import WIDTH
 
 

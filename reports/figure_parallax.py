@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import figure_style as style
 from .document import format as fmt
+from .figures import style
 from .results_view import (
     FIXED,
     GROUND_ANGLES,

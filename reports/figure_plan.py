@@ -12,9 +12,9 @@ from matplotlib.colors import BoundaryNorm, Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
-from . import figure_style as style
 from .document import format as fmt
-from .plan_view import (
+from .figures import style
+from .figures.plan_view import (
     FloatArray,
     PlanView,
     arrow_scale,

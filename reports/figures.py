@@ -4,7 +4,7 @@ from pathlib import Path
 
 from . import figure_parallax, figure_plan
 from .figure_regression import regressions
-from .figure_style import Drawing, style
+from .figures.style import Drawing, style
 from .results_view import Results
 
 

@@ -8,10 +8,10 @@ from typing import TypedDict
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from . import fonts
 from .document.numbering import ReportDocument
 from .document.table import Column
-from .figure_style import Drawing
+from .figures.style import Drawing
+from .typefaces import fonts
 
 TEMPLATE = "report.html.j2"
 

@@ -15,8 +15,8 @@ from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 from . import figures, paper_figures
 from .analysis_folder import write_analysis
 from .document import table as tables
-from .figure_style import Drawing
-from .progress import progress_bar
+from .figures.style import Drawing
+from .output.progress import progress_bar
 
 _Numbers = tuple[dict[str, Any], TrueCauses]
 

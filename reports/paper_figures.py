@@ -2,10 +2,10 @@
 
 from matplotlib.axes import Axes
 
-from . import figure_style as style
 from .document import format as fmt
 from .figure_parallax import Bars, bar_figure, corrections, held_angles
 from .figure_regression import Panel, generalised, legend_entries, ordinary, used_errors
+from .figures import style
 from .results_view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
 
 

@@ -11,7 +11,7 @@ from . import statistics_tables
 from .document import format as fmt
 from .document.content import Content, Labelled, Paragraph, Part
 from .document.table import Table, prose_column, text_column
-from .figure_style import Drawing
+from .figures.style import Drawing
 from .paper_conclusions import Conclusion
 from .paper_remarks import differences, printed_numbers
 from .results_view import first

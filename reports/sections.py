@@ -3,7 +3,7 @@
 from . import parallax_tables, regression_tables, statistics_tables
 from .document import format as fmt
 from .document.content import Bullets, Content, Paragraph, Part, filled, known
-from .figure_style import Drawing
+from .figures.style import Drawing
 from .results_view import Results, decided_by_strip, has_mm, rows, setting
 
 

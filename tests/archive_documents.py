@@ -21,8 +21,8 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import NameOID
 
 from posstats import __version__
-from posstats.reports import fonts
 from posstats.reports.archive_pdf import Attachment, render_archive
+from posstats.reports.typefaces import fonts
 from posstats.reports.verification_steps import Steps
 
 CREATED = "2026-01-02T03:04:05+00:00"

@@ -15,9 +15,9 @@ from posstats.formats.block_folder import write_block
 from posstats.reports.accept_command import length_m
 from posstats.reports.acceptance_data import _filled
 from posstats.reports.acceptance_units import Lengths, margin
-from posstats.reports.cjk import faces
 from posstats.reports.cli import cli
 from posstats.reports.document.format import METRE, MINUS
+from posstats.reports.typefaces.cjk import faces
 
 CONTRACT = """
 extends = "asprs-2024"

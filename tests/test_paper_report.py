@@ -23,7 +23,7 @@ from posstats.papers.drift.published import published
 from posstats.papers.drift.seeds import repeated
 from posstats.reports import paper_areas, paper_command
 from posstats.reports.cli import cli
-from posstats.reports.output import staged_folder
+from posstats.reports.output.staged_folder import staged_folder
 from posstats.synthetic import simulate
 
 COMMAND = Path(sys.executable).with_name("posstats")

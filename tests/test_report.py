@@ -15,7 +15,7 @@ from report_results import area_results, assert_schema, coarse_results
 from posstats.errors import PosstatsError
 from posstats.reports import block_document, figures, html, pdf, verdict
 from posstats.reports.document import table as tables
-from posstats.reports.plan_view import PlanView
+from posstats.reports.figures.plan_view import PlanView
 from posstats.reports.report import write_report
 from posstats.reports.summary import summary
 

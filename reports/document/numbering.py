@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..figure_style import Drawing
+from ..figures.style import Drawing
 from .content import Bullets, Content, Labelled, Paragraph, Part
 from .key_figure import KeyFigure
 from .table import Table

@@ -13,8 +13,8 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
-from .document import format as fmt
-from .fonts import FAMILY
+from ..document import format as fmt
+from ..typefaces.fonts import FAMILY
 from .svg import embeddable
 
 # Okabe & Ito (2008), "Color Universal Design": told apart by colour-blind readers; the markers

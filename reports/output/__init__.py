@@ -1,0 +1,1 @@
+"""Where output goes: staged folders, progress, time stamp."""

@@ -1,0 +1,1 @@
+"""Typefaces: subsets, Chinese, bold."""
