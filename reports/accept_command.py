@@ -16,8 +16,8 @@ from posstats.plain_values import RESULTS_SCHEMA, to_json
 
 from .acceptance_data import Demand, assembled, embedded
 from .acceptance_writing import read_templates, write_document
-from .archive_pdf import Attachment
-from .archive_reading import MALFORMED
+from .archive.reading import MALFORMED
+from .archive.writing import Attachment
 from .output.progress import Advance, progress_bar
 from .output.staged_folder import staged_folder
 from .output.timestamp import now

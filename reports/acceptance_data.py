@@ -19,7 +19,7 @@ from posstats.acceptance.values import Occasion, acceptance_values, document_id
 from posstats.errors import PosstatsError
 
 from . import acceptance_words
-from .archive_pdf import Attachment
+from .archive.writing import Attachment
 from .document import format as fmt
 from .document import table as tables
 from .results_view import Results

@@ -11,7 +11,7 @@ from posstats.errors import PosstatsError
 from . import acceptance_templates
 from .acceptance_document import build
 from .document.catalogue import catalogue
-from .garbage import garbage_kept
+from .pages.garbage import garbage_kept
 from .typefaces import cjk, fonts
 
 SCHEMA = "posstats-acceptance/1"

@@ -9,8 +9,8 @@ from posstats.plain_values import to_json
 
 from .acceptance_data import ACCEPTANCE
 from .acceptance_report import render_document
-from .archive_pdf import Attachment, render_archive
-from .pdf import PdfUnavailableError
+from .archive.writing import Attachment, render_archive
+from .pages.pdf import PdfUnavailableError
 
 _TEMPLATE_SUFFIXES = (".j2", ".css", ".svg", ".png", ".jpg", ".jpeg")
 _LARGEST_TEMPLATES = 10_000_000

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-from . import block_document, figures, html
-from . import pdf as pdf_writer
+from . import block_document, figures
 from .document import table as tables
 from .document.numbering import ReportDocument
-from .garbage import garbage_kept
+from .pages import html
+from .pages import pdf as pdf_writer
+from .pages.garbage import garbage_kept
 from .results_view import Results
 
 

@@ -8,8 +8,8 @@ import datetime as dt
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from .archive_file import UnreadableArchiveError, part, read_file
-from .archive_reading import MALFORMED, Archive, open_archive
+from .archive.file import UnreadableArchiveError, part, read_file
+from .archive.reading import MALFORMED, Archive, open_archive
 from .verification_data import assessment, embedded_files, input_files, recomputed
 from .verification_pages import pages
 from .verification_signature import count_signatures, signatures

@@ -7,7 +7,7 @@ from typing import Any
 
 from posstats.errors import PosstatsError
 
-from .archive_reading import ACCEPTANCE, MALFORMED, Archive
+from .archive.reading import ACCEPTANCE, MALFORMED, Archive
 from .verification_steps import Steps
 from .verification_values import TOLERANCE, differences
 from .verify_words import (

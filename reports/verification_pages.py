@@ -7,8 +7,8 @@ from jinja2 import TemplateError
 
 from posstats.errors import PosstatsError
 
-from .archive_pdf import Attachment, render_archive
-from .archive_reading import MALFORMED, Archive, decoded, open_pdf, written
+from .archive.reading import MALFORMED, Archive, decoded, open_pdf, written
+from .archive.writing import Attachment, render_archive
 from .verification_steps import Steps, Values
 from .verification_text import page_texts
 from .verify_words import (

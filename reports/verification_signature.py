@@ -9,9 +9,9 @@ import pikepdf
 
 from posstats.errors import PosstatsError
 
-from .archive_file import ArchiveFile, UnreadableArchiveError
-from .archive_reading import MALFORMED
-from .signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
+from .archive.file import ArchiveFile, UnreadableArchiveError
+from .archive.reading import MALFORMED
+from .archive.signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
 from .verify_words import (
     NO_ANCHOR,
     SIGNED,

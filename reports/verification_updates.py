@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import pikepdf
 
-from .archive_file import ArchiveFile
-from .archive_reading import open_pdf, written
+from .archive.file import ArchiveFile
+from .archive.reading import open_pdf, written
 from .verify_words import APPENDED, NOTHING_APPENDED, ONLY_SIGNATURES, Answer, answer
 
 _CATALOG_ADDITIONS = {"/AcroForm", "/DSS", "/Extensions", "/Version"}

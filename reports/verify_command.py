@@ -12,7 +12,7 @@ from posstats.plain_values import versions
 from .acceptance_data import reassess
 from .acceptance_report import render_document
 from .acceptance_writing import read_templates
-from .archive_file import read_file
+from .archive.file import read_file
 from .recomputation import recompute
 from .verification import verify
 from .verification_signature import read_trust

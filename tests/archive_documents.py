@@ -21,7 +21,7 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import NameOID
 
 from posstats import __version__
-from posstats.reports.archive_pdf import Attachment, render_archive
+from posstats.reports.archive.writing import Attachment, render_archive
 from posstats.reports.typefaces import fonts
 from posstats.reports.verification_steps import Steps
 

@@ -15,8 +15,9 @@ from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
 from posstats.formats.block_folder import write_block
-from posstats.reports import adjustment_document, adjustment_tables, html
+from posstats.reports import adjustment_document, adjustment_tables
 from posstats.reports.cli import cli
+from posstats.reports.pages import html
 
 POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
 

@@ -12,8 +12,8 @@ from archive_conformance import problems
 from archive_documents import CREATED, contents, document, results_of, write_inputs
 from page_reading import pdf_pages
 
-from posstats.reports import archive_pdf
-from posstats.reports.archive_pdf import ArchiveError, Attachment, render_archive
+from posstats.reports.archive import writing as archive_pdf
+from posstats.reports.archive.writing import ArchiveError, Attachment, render_archive
 
 PAGE = "<!DOCTYPE html><html lang='en'><title>T</title><h1>A</h1><p>{}</p></html>"
 

@@ -21,8 +21,9 @@ from posstats.block.model import Block
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
-from posstats.reports import block_document, html
+from posstats.reports import block_document
 from posstats.reports.cli import cli
+from posstats.reports.pages import html
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}
 ONE_STRIP = scenario()["flight"] | {"n_strips": 1}

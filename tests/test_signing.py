@@ -18,8 +18,8 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 from cryptography.hazmat.primitives.serialization import NoEncryption, pkcs12
 
 from posstats.errors import PosstatsError
+from posstats.reports.archive.signing import PyHankoMissingError, SigningError, sign
 from posstats.reports.sign_command import sign_file
-from posstats.reports.signing import PyHankoMissingError, SigningError, sign
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

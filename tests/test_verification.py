@@ -26,10 +26,11 @@ from archive_documents import (
     write_inputs,
 )
 
-from posstats.reports import archive_pdf, verification_pages
+from posstats.reports import verification_pages
 from posstats.reports import verify_words as words
-from posstats.reports.archive_reading import decoded
-from posstats.reports.signing import sign
+from posstats.reports.archive import writing as archive_pdf
+from posstats.reports.archive.reading import decoded
+from posstats.reports.archive.signing import sign
 from posstats.reports.verification import holds, verify
 from posstats.reports.verification_signature import TrustError, read_trust
 from posstats.reports.verification_values import differences

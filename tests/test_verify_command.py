@@ -27,7 +27,7 @@ from posstats.formats.block_folder import read_block, write_block
 from posstats.plain_values import to_json
 from posstats.reports import verify_command
 from posstats.reports import verify_words as words
-from posstats.reports.archive_file import LARGEST_BYTES
+from posstats.reports.archive.file import LARGEST_BYTES
 from posstats.reports.cli import cli
 from posstats.reports.recomputation import recompute
 from posstats.reports.verification_values import TOLERANCE

@@ -8,10 +8,10 @@ from typing import TypedDict
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from .document.numbering import ReportDocument
-from .document.table import Column
-from .figures.style import Drawing
-from .typefaces import fonts
+from ..document.numbering import ReportDocument
+from ..document.table import Column
+from ..figures.style import Drawing
+from ..typefaces import fonts
 
 TEMPLATE = "report.html.j2"
 

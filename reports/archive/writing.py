@@ -10,9 +10,9 @@ from typing import Any, Literal
 
 from posstats.errors import PosstatsError
 
-from . import pdf
-from .archive_mending import mend
-from .garbage import garbage_kept
+from ..pages import pdf
+from ..pages.garbage import garbage_kept
+from .mending import mend
 
 Relationship = Literal["Data", "Source", "Supplement", "Alternative", "Unspecified"]
 BASE = "posstats:/"  # relative addresses lead nowhere; without any, WeasyPrint fails on some

@@ -9,7 +9,7 @@ from typing import Any
 
 import pikepdf
 
-from .archive_file import ArchiveFile, UnreadableArchiveError
+from .file import ArchiveFile, UnreadableArchiveError
 
 ACCEPTANCE = "acceptance.json"
 SCHEMA = "posstats-acceptance/1"

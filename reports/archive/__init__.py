@@ -1,0 +1,1 @@
+"""Documents for the archive: PDF/A with attachments, signatures."""
