@@ -18,10 +18,10 @@ from .acceptance_data import Demand, assembled, embedded
 from .acceptance_writing import read_templates, write_document
 from .archive.reading import MALFORMED
 from .archive.writing import Attachment
+from .block.summary import WIDTH
 from .output.progress import Advance, progress_bar
 from .output.staged_folder import staged_folder
 from .output.timestamp import now
-from .summary import WIDTH
 
 BLOCK_TOML = "block.toml"
 EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}

@@ -20,9 +20,9 @@ from posstats.errors import PosstatsError
 
 from . import acceptance_words
 from .archive.writing import Attachment
+from .block.view import Results
 from .document import format as fmt
 from .document import table as tables
-from .results_view import Results
 
 Values = dict[str, Any]
 

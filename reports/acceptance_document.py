@@ -10,12 +10,12 @@ from . import acceptance_words as wording
 from .acceptance_figures import draw
 from .acceptance_sections import parts
 from .acceptance_words import Words
+from .block.view import Results
 from .document import format as fmt
 from .document.key_figure import KeyFigure
 from .document.numbering import Section, numbered
 from .document.table import Table
 from .figures.style import shortened
-from .results_view import Results
 from .typefaces.cjk import is_cjk
 
 PARTIES = ("inspector", "contractor", "client")

@@ -7,6 +7,7 @@ from posstats.acceptance.evidence import PARALLAX_KEYS
 
 from . import acceptance_units as units
 from .acceptance_words import Words
+from .block.view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
 from .document import format as fmt
 from .document.table import (
     Column,
@@ -17,7 +18,6 @@ from .document.table import (
     prose_column,
     text_column,
 )
-from .results_view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
 
 RELATIVE = "independent_px"
 SHOWN_DECISIONS = 40

@@ -9,11 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from . import acceptance_units as units
-from . import figure_plan, figure_regression
 from .acceptance_evidence import parallax_series
 from .acceptance_words import Words
+from .block import line_figures as figure_regression
+from .block import plan_figures as figure_plan
+from .block.bar_figures import Bars, bar_figure
+from .block.view import Results, Row, angles, rows, setting, strips_with_models
 from .document import format as fmt
-from .figure_parallax import Bars, bar_figure
 from .figures import style
 from .figures.plan_view import (
     FloatArray,
@@ -25,7 +27,6 @@ from .figures.plan_view import (
     scale_arrow,
     view_of,
 )
-from .results_view import Results, Row, angles, rows, setting, strips_with_models
 from .typefaces import cjk
 
 MAX_SHARE = 2.0  # of a limit; beyond it a value is drawn at the edge

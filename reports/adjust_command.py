@@ -14,11 +14,11 @@ from posstats.formats.block_folder import read_block
 from posstats.plain_values import to_json
 
 from . import adjustment_document, adjustment_verdict
+from .block.report import write_pages
+from .block.summary import WIDTH
 from .output.progress import progress_bar
 from .output.staged_folder import staged_folder
 from .output.timestamp import now
-from .report import write_pages
-from .summary import WIDTH
 
 
 def control_choice(text: str | None) -> ControlChoice:

@@ -1,12 +1,13 @@
 """The document of the report on an adjustment: what it says around its tables and figures."""
 
-from . import adjustment_figures, adjustment_tables, adjustment_verdict, statistics_tables
+from . import adjustment_figures, adjustment_tables, adjustment_verdict
 from .adjustment_view import CONTROL, DEFORMATION, DRIFTS
+from .block import statistics_tables
+from .block.view import Results
 from .document import format as fmt
 from .document.content import Bullets, Content, Paragraph, Part, filled, known
 from .document.numbering import SIMULATED, ReportDocument, numbered
 from .figures.style import Drawing
-from .results_view import Results
 
 
 def build(results: Results) -> ReportDocument:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from .adjustment_view import GROUPS, KINDS, parameter_words, shown_unit
+from .block.view import Results, Row, rows, scope_label
 from .document import format as fmt
 from .document.table import (
     Column,
@@ -14,7 +15,6 @@ from .document.table import (
     prose_column,
     text_column,
 )
-from .results_view import Results, Row, rows, scope_label
 
 SHOWN_BLUNDERS = 25
 SHOWN_POINTS = 60

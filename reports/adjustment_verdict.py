@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from .adjustment_view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
+from .block.view import Results, Row, first, rows
 from .document import format as fmt
 from .document.key_figure import KeyFigure
-from .results_view import Results, Row, first, rows
 
 DOUBTFUL_P = 0.05
 SHOWN = 4

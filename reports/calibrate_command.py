@@ -13,9 +13,9 @@ from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 
 from . import adjustment_verdict
+from .block.summary import WIDTH
 from .document import format as fmt
 from .output.progress import progress_bar
-from .summary import WIDTH
 
 
 def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> Iterator[str]:

@@ -12,8 +12,9 @@ from typing import Any
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
-from . import figures, paper_figures
-from .analysis_folder import write_analysis
+from . import paper_figures
+from .block import figures
+from .block.folder import write_analysis
 from .document import table as tables
 from .figures.style import Drawing
 from .output.progress import progress_bar

@@ -15,9 +15,9 @@ from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
 from . import paper_tables
+from .block.view import first, rows
 from .document import format as fmt
 from .document.content import Bullets, Labelled, Paragraph, Part
-from .results_view import first, rows
 
 _SAME_DIMENSIONS = (
     "The paper concludes that positions hardly matter because independent and dependent "

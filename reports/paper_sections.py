@@ -7,14 +7,14 @@ from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
 from . import paper_tables as tables
-from . import statistics_tables
+from .block import statistics_tables
+from .block.view import first
 from .document import format as fmt
 from .document.content import Content, Labelled, Paragraph, Part
 from .document.table import Table, prose_column, text_column
 from .figures.style import Drawing
 from .paper_conclusions import Conclusion
 from .paper_remarks import differences, printed_numbers
-from .results_view import first
 
 Figures = Mapping[int, Sequence[Drawing]]
 """By area: Figures 1, 2 and 3."""

@@ -16,11 +16,11 @@ from posstats.papers.wucaps.situations import SITUATIONS, Situation
 from posstats.plain_values import versions
 
 from . import wucaps_document
+from .block.report import write_pages
 from .output.progress import progress_bar
 from .output.staged_folder import staged_folder
 from .output.timestamp import now
 from .paper_conclusions import Conclusion
-from .report import write_pages
 from .wucaps_conclusions import beyond, conclusions
 
 SCHEMA = "posstats-wucaps/1"

@@ -7,8 +7,9 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import flight_seed
 
-from . import statistics_tables, wucaps_figures
+from . import wucaps_figures
 from . import wucaps_tables as tables
+from .block import statistics_tables
 from .document import format as fmt
 from .document.content import Bullets, Content, Paragraph, Part
 from .document.table import Table, prose_column, text_column

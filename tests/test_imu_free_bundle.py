@@ -21,7 +21,7 @@ from posstats.block.model import Block
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
-from posstats.reports import block_document
+from posstats.reports.block import document as block_document
 from posstats.reports.cli import cli
 from posstats.reports.pages import html
 

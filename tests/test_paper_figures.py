@@ -12,9 +12,9 @@ from matplotlib.textpath import TextPath
 from report_results import ANGLES, area_results
 from scipy import stats
 
-from posstats.reports import figure_parallax
+from posstats.reports.block import bar_figures as figure_parallax
+from posstats.reports.block.line_figures import Panel, generalised, ordinary
 from posstats.reports.document.format import MICRORADIAN
-from posstats.reports.figure_regression import Panel, generalised, ordinary
 from posstats.reports.paper_figures import draw_area
 
 N_STRIPS, PER_STRIP = 3, 10

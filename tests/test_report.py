@@ -13,12 +13,13 @@ from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain,
 from report_results import area_results, assert_schema, coarse_results
 
 from posstats.errors import PosstatsError
-from posstats.reports import block_document, figures, verdict
+from posstats.reports.block import document as block_document
+from posstats.reports.block import figures, verdict
+from posstats.reports.block.report import write_report
+from posstats.reports.block.summary import summary
 from posstats.reports.document import table as tables
 from posstats.reports.figures.plan_view import PlanView
 from posstats.reports.pages import html, pdf
-from posstats.reports.report import write_report
-from posstats.reports.summary import summary
 
 HOSTILE = "<script>alert(1)</script> \"a\", 'b' & $x_1$"
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..results_view import Results, Row, first, verdict
+from ..block.view import Results, Row, first, verdict
 from . import format as fmt
 
 

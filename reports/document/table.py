@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
-from ..results_view import Results
+from ..block.view import Results
 from . import format as fmt
 
 Align = Literal["left", "right", "prose"]

@@ -13,8 +13,8 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, Transform, blended_transform_factory
 
+from ..block.view import Row
 from ..document import format as fmt
-from ..results_view import Row
 from . import style
 
 FloatArray = npt.NDArray[np.float64]

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from . import figure_parallax, figure_plan
-from .figure_regression import regressions
-from .figures.style import Drawing, style
-from .results_view import Results
+from ..figures.style import Drawing, style
+from . import bar_figures as figure_parallax
+from . import plan_figures as figure_plan
+from .line_figures import regressions
+from .view import Results
 
 
 def draw(results: Results) -> dict[str, Drawing]:

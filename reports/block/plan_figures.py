@@ -12,9 +12,9 @@ from matplotlib.colors import BoundaryNorm, Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
-from .document import format as fmt
-from .figures import style
-from .figures.plan_view import (
+from ..document import format as fmt
+from ..figures import style
+from ..figures.plan_view import (
     FloatArray,
     PlanView,
     arrow_scale,
@@ -24,7 +24,7 @@ from .figures.plan_view import (
     scale_arrow,
     view_of,
 )
-from .results_view import Results, Row, rows, strips
+from .view import Results, Row, rows, strips
 
 Label = tuple[FloatArray, str]  # middle in points, text
 

@@ -2,9 +2,16 @@
 
 from collections.abc import Sequence
 
-from .document import format as fmt
-from .document.table import Column, Table, aligned_column, count_column, number_column, text_column
-from .results_view import (
+from ..document import format as fmt
+from ..document.table import (
+    Column,
+    Table,
+    aligned_column,
+    count_column,
+    number_column,
+    text_column,
+)
+from .view import (
     FIXED,
     METHODS,
     Results,

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 
-from .document import format as fmt
-from .document.table import Table, count_column, number_column, text_column
-from .results_view import Results, orientation_label, rows, scope_label
+from ..document import format as fmt
+from ..document.table import Table, count_column, number_column, text_column
+from .view import Results, orientation_label, rows, scope_label
 
 
 def angle_summary(results: Results) -> Table:

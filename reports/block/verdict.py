@@ -3,18 +3,9 @@
 import math
 from collections.abc import Iterable
 
-from .document import format as fmt
-from .results_view import (
-    Results,
-    Row,
-    angles,
-    decided_by_strip,
-    first,
-    rows,
-    setting,
-    verdict,
-)
+from ..document import format as fmt
 from .verdict_cause import NEAR_RELATIVE, cause, over_time
+from .view import Results, Row, angles, decided_by_strip, first, rows, setting, verdict
 
 COARSE_PX = 50.0  # neither stereo viewing nor matching bridges this much parallax
 MUCH_LEFT = 3.0  # multiple of relative orientation's from which the rest is explained

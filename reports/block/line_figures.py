@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
-from .document import format as fmt
-from .figures import style
-from .results_view import Results, Row, angles, decided_by_strip, first, rows, setting
+from ..document import format as fmt
+from ..figures import style
+from .view import Results, Row, angles, decided_by_strip, first, rows, setting
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,11 +1,11 @@
 """The document of a block's report."""
 
+from ..document.key_figure import key_figures
+from ..document.numbering import SIMULATED, ReportDocument, numbered
+from ..figures.style import Drawing
 from . import figures, sections
-from .document.key_figure import key_figures
-from .document.numbering import SIMULATED, ReportDocument, numbered
-from .figures.style import Drawing
-from .results_view import Results
 from .verdict import is_coarse, paragraph
+from .view import Results
 
 
 def build(results: Results, drawings: dict[str, Drawing] | None = None) -> ReportDocument:

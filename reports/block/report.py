@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
-from . import block_document, figures
-from .document import table as tables
-from .document.numbering import ReportDocument
-from .pages import html
-from .pages import pdf as pdf_writer
-from .pages.garbage import garbage_kept
-from .results_view import Results
+from ..document import table as tables
+from ..document.numbering import ReportDocument
+from ..pages import html
+from ..pages import pdf as pdf_writer
+from ..pages.garbage import garbage_kept
+from . import document as block_document
+from . import figures
+from .view import Results
 
 
 def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:

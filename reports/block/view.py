@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from .document import format as fmt
+from ..document import format as fmt
 
 Results = Mapping[str, Any]
 Row = Mapping[str, Any]

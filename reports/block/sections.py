@@ -1,10 +1,10 @@
 """What a block's report says, section by section, around its tables and figures."""
 
+from ..document import format as fmt
+from ..document.content import Bullets, Content, Paragraph, Part, filled, known
+from ..figures.style import Drawing
 from . import parallax_tables, regression_tables, statistics_tables
-from .document import format as fmt
-from .document.content import Bullets, Content, Paragraph, Part, filled, known
-from .figures.style import Drawing
-from .results_view import Results, decided_by_strip, has_mm, rows, setting
+from .view import Results, decided_by_strip, has_mm, rows, setting
 
 
 def subtitle(results: Results) -> str:

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from .document import format as fmt
-from .document.table import (
+from ..document import format as fmt
+from ..document.table import (
     Column,
     Table,
     count_column,
@@ -12,7 +12,7 @@ from .document.table import (
     prose_column,
     text_column,
 )
-from .results_view import Results, Row, decided_by_strip, first, rows, scope_label
+from .view import Results, Row, decided_by_strip, first, rows, scope_label
 
 SHOWN_DECISIONS = 20
 SHOWN_STRIP_LINES = 18  # from which lines strip by strip fill pages and tell no more

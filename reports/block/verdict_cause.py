@@ -1,7 +1,7 @@
 """Sentences of the verdict: the angle that parallax comes from, and its error over time."""
 
-from .document import format as fmt
-from .results_view import Results, Row, first, mean_over_models, rows, setting, verdict
+from ..document import format as fmt
+from .view import Results, Row, first, mean_over_models, rows, setting, verdict
 
 NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
 SIGNIFICANT = 0.05

@@ -3,9 +3,9 @@
 import textwrap
 from collections.abc import Iterator
 
+from ..document import format as fmt
 from . import verdict
-from .document import format as fmt
-from .results_view import Results, decided_by_strip, rows
+from .view import Results, decided_by_strip, rows
 
 WIDTH = 88
 SHOWN_STRIPS = 12

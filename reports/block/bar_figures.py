@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .document import format as fmt
-from .figures import style
-from .results_view import (
+from ..document import format as fmt
+from ..figures import style
+from .view import (
     FIXED,
     GROUND_ANGLES,
     Results,
