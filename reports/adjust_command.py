@@ -13,7 +13,8 @@ from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 from posstats.plain_values import to_json
 
-from . import adjustment_document, adjustment_verdict
+from .adjustment import document as adjustment_document
+from .adjustment import verdict as adjustment_verdict
 from .block.report import write_pages
 from .block.summary import WIDTH
 from .output.progress import progress_bar

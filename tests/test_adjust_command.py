@@ -15,7 +15,12 @@ from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
 from posstats.formats.block_folder import write_block
-from posstats.reports import adjustment_document, adjustment_tables
+from posstats.reports.adjustment import (
+    document as adjustment_document,
+)
+from posstats.reports.adjustment import (
+    tables as adjustment_tables,
+)
 from posstats.reports.cli import cli
 from posstats.reports.pages import html
 

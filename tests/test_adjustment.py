@@ -21,7 +21,7 @@ from posstats.formats.block_folder import write_block
 from posstats.geometry.ground.intersection import intersect
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.plain_values import to_json
-from posstats.reports.adjustment_verdict import paragraph
+from posstats.reports.adjustment.verdict import paragraph
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
 GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}

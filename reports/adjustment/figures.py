@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from .block.plan_figures import difference_plan
-from .block.view import Results, Row, rows, strips
-from .document import format as fmt
-from .figures import style
-from .figures.plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
+from ..block.plan_figures import difference_plan
+from ..block.view import Results, Row, rows, strips
+from ..document import format as fmt
+from ..figures import style
+from ..figures.plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
 
 MAX_PLAN_IN = 3.4
 LEAST_RAYS = 5

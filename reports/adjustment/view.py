@@ -3,8 +3,8 @@
 import math
 from collections.abc import Mapping
 
-from .block.view import Results, Row, rows
-from .document import format as fmt
+from ..block.view import Results, Row, rows
+from ..document import format as fmt
 
 _AXES = {"x": "X", "y": "Y", "z": "Z"}
 GROUPS = {

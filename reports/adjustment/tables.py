@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 
-from .adjustment_view import GROUPS, KINDS, parameter_words, shown_unit
-from .block.view import Results, Row, rows, scope_label
-from .document import format as fmt
-from .document.table import (
+from ..block.view import Results, Row, rows, scope_label
+from ..document import format as fmt
+from ..document.table import (
     Column,
     Table,
     aligned_column,
@@ -15,6 +14,7 @@ from .document.table import (
     prose_column,
     text_column,
 )
+from .view import GROUPS, KINDS, parameter_words, shown_unit
 
 SHOWN_BLUNDERS = 25
 SHOWN_POINTS = 60

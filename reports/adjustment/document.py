@@ -1,13 +1,21 @@
 """The document of the report on an adjustment: what it says around its tables and figures."""
 
-from . import adjustment_figures, adjustment_tables, adjustment_verdict
-from .adjustment_view import CONTROL, DEFORMATION, DRIFTS
-from .block import statistics_tables
-from .block.view import Results
-from .document import format as fmt
-from .document.content import Bullets, Content, Paragraph, Part, filled, known
-from .document.numbering import SIMULATED, ReportDocument, numbered
-from .figures.style import Drawing
+from ..block import statistics_tables
+from ..block.view import Results
+from ..document import format as fmt
+from ..document.content import Bullets, Content, Paragraph, Part, filled, known
+from ..document.numbering import SIMULATED, ReportDocument, numbered
+from ..figures.style import Drawing
+from . import (
+    figures as adjustment_figures,
+)
+from . import (
+    tables as adjustment_tables,
+)
+from . import (
+    verdict as adjustment_verdict,
+)
+from .view import CONTROL, DEFORMATION, DRIFTS
 
 
 def build(results: Results) -> ReportDocument:

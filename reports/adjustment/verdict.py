@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from .adjustment_view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
-from .block.view import Results, Row, first, rows
-from .document import format as fmt
-from .document.key_figure import KeyFigure
+from ..block.view import Results, Row, first, rows
+from ..document import format as fmt
+from ..document.key_figure import KeyFigure
+from .view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
 
 DOUBTFUL_P = 0.05
 SHOWN = 4
