@@ -14,8 +14,8 @@ from posstats.acceptance.profile_files import load_contract
 from posstats.errors import PosstatsError
 from posstats.plain_values import RESULTS_SCHEMA, to_json
 
-from .acceptance_data import Demand, assembled, embedded
-from .acceptance_writing import read_templates, write_document
+from .acceptance.data import Demand, assembled, embedded
+from .acceptance.writing import read_templates, write_document
 from .archive.reading import MALFORMED
 from .archive.writing import Attachment
 from .block.summary import WIDTH

@@ -202,7 +202,7 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
     Example:
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
-    from .verification import holds
+    from .verification.questions import holds
     from .verify_command import verify_file
 
     answers = verify_file(file, inputs, trust, templates)

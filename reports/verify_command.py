@@ -9,15 +9,15 @@ from posstats import __version__
 from posstats.errors import PosstatsError
 from posstats.plain_values import versions
 
-from .acceptance_data import reassess
-from .acceptance_report import render_document
-from .acceptance_writing import read_templates
+from .acceptance.data import reassess
+from .acceptance.page import render_document
+from .acceptance.writing import read_templates
 from .archive.file import read_file
-from .recomputation import recompute
-from .verification import verify
-from .verification_signature import read_trust
-from .verification_steps import Steps
-from .verify_words import Answer
+from .verification.questions import verify
+from .verification.recomputation import recompute
+from .verification.signature import read_trust
+from .verification.steps import Steps
+from .verification.words import Answer
 
 
 def verify_file(

@@ -23,7 +23,7 @@ from cryptography.x509.oid import NameOID
 from posstats import __version__
 from posstats.reports.archive.writing import Attachment, render_archive
 from posstats.reports.typefaces import fonts
-from posstats.reports.verification_steps import Steps
+from posstats.reports.verification.steps import Steps
 
 CREATED = "2026-01-02T03:04:05+00:00"
 NOW = dt.datetime.now(dt.UTC)

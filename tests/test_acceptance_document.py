@@ -11,10 +11,11 @@ import pytest
 from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.errors import PosstatsError
-from posstats.reports import acceptance_figures, acceptance_words
-from posstats.reports.acceptance_document import build
-from posstats.reports.acceptance_report import render_document, unshown
-from posstats.reports.acceptance_units import lengths
+from posstats.reports.acceptance import figures as acceptance_figures
+from posstats.reports.acceptance import words as acceptance_words
+from posstats.reports.acceptance.document import build
+from posstats.reports.acceptance.page import render_document, unshown
+from posstats.reports.acceptance.units import lengths
 from posstats.reports.pages import pdf
 from posstats.reports.typefaces import cjk
 

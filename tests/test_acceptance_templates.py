@@ -7,7 +7,7 @@ import pytest
 from page_reading import read
 
 from posstats.errors import PosstatsError
-from posstats.reports.acceptance_report import render_document
+from posstats.reports.acceptance.page import render_document
 
 PNG = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg=="

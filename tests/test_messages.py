@@ -11,7 +11,7 @@ import pytest
 from posstats.acceptance.evidence import ORIENTATIONS
 from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.errors import PosstatsError
-from posstats.reports import acceptance_words
+from posstats.reports.acceptance import words as acceptance_words
 from posstats.reports.document.catalogue import MissingMessageError, catalogue
 from posstats.statistics import samples
 

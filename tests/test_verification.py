@@ -26,15 +26,15 @@ from archive_documents import (
     write_inputs,
 )
 
-from posstats.reports import verification_pages
-from posstats.reports import verify_words as words
 from posstats.reports.archive import writing as archive_pdf
 from posstats.reports.archive.reading import decoded
 from posstats.reports.archive.signing import sign
-from posstats.reports.verification import holds, verify
-from posstats.reports.verification_signature import TrustError, read_trust
-from posstats.reports.verification_values import differences
-from posstats.reports.verify_words import Answer, Standing
+from posstats.reports.verification import pages as verification_pages
+from posstats.reports.verification import words
+from posstats.reports.verification.questions import holds, verify
+from posstats.reports.verification.signature import TrustError, read_trust
+from posstats.reports.verification.values import differences
+from posstats.reports.verification.words import Answer, Standing
 
 INTACT = words.intact_question("the signature")
 IN_FORCE = words.certificate_question("the signature")

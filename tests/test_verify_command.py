@@ -26,11 +26,11 @@ from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.plain_values import to_json
 from posstats.reports import verify_command
-from posstats.reports import verify_words as words
 from posstats.reports.archive.file import LARGEST_BYTES
 from posstats.reports.cli import cli
-from posstats.reports.recomputation import recompute
-from posstats.reports.verification_values import TOLERANCE
+from posstats.reports.verification import words
+from posstats.reports.verification.recomputation import recompute
+from posstats.reports.verification.values import TOLERANCE
 
 COMMAND = Path(sys.executable).with_name("posstats")
 
@@ -113,7 +113,7 @@ def test_help_shows_an_example_and_never_a_passphrase(command):
 
 def test_the_commands_are_light_to_load():
     code = (
-        "import sys, posstats.reports.verification, posstats.reports.sign_command;"
+        "import sys, posstats.reports.verification.questions, posstats.reports.sign_command;"
         "print(*sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,13 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from . import acceptance_evidence as evidence
-from . import acceptance_tables as tables
-from .acceptance_words import Words, is_borderline
-from .block.view import Results, rows
-from .document import format as fmt
-from .document.content import Bullets, Content, Paragraph, Part, filled, known
-from .figures.style import Drawing
+from ..block.view import Results, rows
+from ..document import format as fmt
+from ..document.content import Bullets, Content, Paragraph, Part, filled, known
+from ..figures.style import Drawing
+from . import evidence, tables
+from .words import Words, is_borderline
 
 FEW_POINTS = 30
 SIGNIFICANT = 0.05

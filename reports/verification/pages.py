@@ -7,11 +7,11 @@ from jinja2 import TemplateError
 
 from posstats.errors import PosstatsError
 
-from .archive.reading import MALFORMED, Archive, decoded, open_pdf, written
-from .archive.writing import Attachment, render_archive
-from .verification_steps import Steps, Values
-from .verification_text import page_texts
-from .verify_words import (
+from ..archive.reading import MALFORMED, Archive, decoded, open_pdf, written
+from ..archive.writing import Attachment, render_archive
+from .steps import Steps, Values
+from .text import page_texts
+from .words import (
     NOT_HERE,
     PAGES,
     SAME_BYTES,

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pikepdf
 
-from .archive.file import UnreadableArchiveError
-from .archive.reading import decoded
+from ..archive.file import UnreadableArchiveError
+from ..archive.reading import decoded
 
 LARGEST_PAGE_BYTES = 20_000_000
 DEEPEST = 8

@@ -7,10 +7,10 @@ from typing import Any
 from posstats.errors import PosstatsError
 from posstats.plain_values import to_json
 
-from .acceptance_data import ACCEPTANCE
-from .acceptance_report import render_document
-from .archive.writing import Attachment, render_archive
-from .pages.pdf import PdfUnavailableError
+from ..archive.writing import Attachment, render_archive
+from ..pages.pdf import PdfUnavailableError
+from .data import ACCEPTANCE
+from .page import render_document
 
 _TEMPLATE_SUFFIXES = (".j2", ".css", ".svg", ".png", ".jpg", ".jpeg")
 _LARGEST_TEMPLATES = 10_000_000

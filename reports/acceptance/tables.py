@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from . import acceptance_units as units
-from .acceptance_units import Row
-from .acceptance_words import Words, evidence, product
-from .block.statistics_tables import pairs
-from .block.view import Results
-from .document import format as fmt
-from .document.table import Column, Table, count_column, p_column, prose_column, text_column
+from ..block.statistics_tables import pairs
+from ..block.view import Results
+from ..document import format as fmt
+from ..document.table import Column, Table, count_column, p_column, prose_column, text_column
+from . import units
+from .units import Row
+from .words import Words, evidence, product
 
 Acceptance = Mapping[str, Any]
 

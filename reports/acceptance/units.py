@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .document import format as fmt
+from ..document import format as fmt
 
 CENTIMETRE = fmt.Unit("cm", 100.0)
 LARGE_LIMIT_M, LARGE_VALUE_M = 1.0, 10.0  # from which metres are read more easily

@@ -8,14 +8,14 @@ import datetime as dt
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from .archive.file import UnreadableArchiveError, part, read_file
-from .archive.reading import MALFORMED, Archive, open_archive
-from .verification_data import assessment, embedded_files, input_files, recomputed
-from .verification_pages import pages
-from .verification_signature import count_signatures, signatures
-from .verification_steps import Steps
-from .verification_updates import appended
-from .verify_words import (
+from ..archive.file import UnreadableArchiveError, part, read_file
+from ..archive.reading import MALFORMED, Archive, open_archive
+from .data import assessment, embedded_files, input_files, recomputed
+from .pages import pages
+from .signature import count_signatures, signatures
+from .steps import Steps
+from .updates import appended
+from .words import (
     APPENDED,
     INPUTS,
     NO_INPUTS,

@@ -4,19 +4,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from . import acceptance_tables as tables
-from . import acceptance_units as units
-from . import acceptance_words as wording
-from .acceptance_figures import draw
-from .acceptance_sections import parts
-from .acceptance_words import Words
-from .block.view import Results
-from .document import format as fmt
-from .document.key_figure import KeyFigure
-from .document.numbering import Section, numbered
-from .document.table import Table
-from .figures.style import shortened
-from .typefaces.cjk import is_cjk
+from ..block.view import Results
+from ..document import format as fmt
+from ..document.key_figure import KeyFigure
+from ..document.numbering import Section, numbered
+from ..document.table import Table
+from ..figures.style import shortened
+from ..typefaces.cjk import is_cjk
+from . import tables, units
+from . import words as wording
+from .figures import draw
+from .sections import parts
+from .words import Words
 
 PARTIES = ("inspector", "contractor", "client")
 STATED = ("title", "number", "client", "contractor", "inspector", "flight", "flight_date", "sensor",

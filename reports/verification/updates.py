@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 import pikepdf
 
-from .archive.file import ArchiveFile
-from .archive.reading import open_pdf, written
-from .verify_words import APPENDED, NOTHING_APPENDED, ONLY_SIGNATURES, Answer, answer
+from ..archive.file import ArchiveFile
+from ..archive.reading import open_pdf, written
+from .words import APPENDED, NOTHING_APPENDED, ONLY_SIGNATURES, Answer, answer
 
 _CATALOG_ADDITIONS = {"/AcroForm", "/DSS", "/Extensions", "/Version"}
 _FORM_KEYS = {"/DA", "/DR", "/Fields", "/SigFlags"}

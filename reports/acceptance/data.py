@@ -18,11 +18,11 @@ from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values, document_id
 from posstats.errors import PosstatsError
 
-from . import acceptance_words
-from .archive.writing import Attachment
-from .block.view import Results
-from .document import format as fmt
-from .document import table as tables
+from ..archive.writing import Attachment
+from ..block.view import Results
+from ..document import format as fmt
+from ..document import table as tables
+from . import words as acceptance_words
 
 Values = dict[str, Any]
 

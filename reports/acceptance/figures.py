@@ -8,16 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from . import acceptance_units as units
-from .acceptance_evidence import parallax_series
-from .acceptance_words import Words
-from .block import line_figures as figure_regression
-from .block import plan_figures as figure_plan
-from .block.bar_figures import Bars, bar_figure
-from .block.view import Results, Row, angles, rows, setting, strips_with_models
-from .document import format as fmt
-from .figures import style
-from .figures.plan_view import (
+from ..block import line_figures as figure_regression
+from ..block import plan_figures as figure_plan
+from ..block.bar_figures import Bars, bar_figure
+from ..block.view import Results, Row, angles, rows, setting, strips_with_models
+from ..document import format as fmt
+from ..figures import style
+from ..figures.plan_view import (
     FloatArray,
     PlanView,
     arrow_scale,
@@ -27,7 +24,10 @@ from .figures.plan_view import (
     scale_arrow,
     view_of,
 )
-from .typefaces import cjk
+from ..typefaces import cjk
+from . import units
+from .evidence import parallax_series
+from .words import Words
 
 MAX_SHARE = 2.0  # of a limit; beyond it a value is drawn at the edge
 FEWEST = 5  # points that a histogram needs

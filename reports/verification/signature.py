@@ -9,10 +9,10 @@ import pikepdf
 
 from posstats.errors import PosstatsError
 
-from .archive.file import ArchiveFile, UnreadableArchiveError
-from .archive.reading import MALFORMED
-from .archive.signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
-from .verify_words import (
+from ..archive.file import ArchiveFile, UnreadableArchiveError
+from ..archive.reading import MALFORMED
+from ..archive.signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
+from .words import (
     NO_ANCHOR,
     SIGNED,
     TRUSTED,

@@ -28,8 +28,8 @@ from markupsafe import Markup
 
 from posstats.errors import PosstatsError
 
-from .document.catalogue import Catalogue
-from .pages import html as pages
+from ..document.catalogue import Catalogue
+from ..pages import html as pages
 
 PAGE = "acceptance.html.j2"
 LOGOS = ("logo.svg", "logo.png", "logo.jpg", "logo.jpeg")

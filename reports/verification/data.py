@@ -7,20 +7,10 @@ from typing import Any
 
 from posstats.errors import PosstatsError
 
-from .archive.reading import ACCEPTANCE, MALFORMED, Archive
-from .verification_steps import Steps
-from .verification_values import TOLERANCE, differences
-from .verify_words import (
-    ASSESSMENT,
-    FILES,
-    INPUTS,
-    NOT_HERE,
-    RECOMPUTED,
-    Answer,
-    answer,
-    failed,
-    listed,
-)
+from ..archive.reading import ACCEPTANCE, MALFORMED, Archive
+from .steps import Steps
+from .values import TOLERANCE, differences
+from .words import ASSESSMENT, FILES, INPUTS, NOT_HERE, RECOMPUTED, Answer, answer, failed, listed
 
 _OF_THE_RUN = {"created", "posstats_version", "versions"}
 

@@ -8,11 +8,11 @@ from markupsafe import Markup
 
 from posstats.errors import PosstatsError
 
-from . import acceptance_templates
-from .acceptance_document import build
-from .document.catalogue import catalogue
-from .pages.garbage import garbage_kept
-from .typefaces import cjk, fonts
+from ..document.catalogue import catalogue
+from ..pages.garbage import garbage_kept
+from ..typefaces import cjk, fonts
+from . import templates as acceptance_templates
+from .document import build
 
 SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn

@@ -5,11 +5,9 @@ from typing import Any
 
 from posstats.acceptance.evidence import PARALLAX_KEYS
 
-from . import acceptance_units as units
-from .acceptance_words import Words
-from .block.view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
-from .document import format as fmt
-from .document.table import (
+from ..block.view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
+from ..document import format as fmt
+from ..document.table import (
     Column,
     Table,
     count_column,
@@ -18,6 +16,8 @@ from .document.table import (
     prose_column,
     text_column,
 )
+from . import units
+from .words import Words
 
 RELATIVE = "independent_px"
 SHOWN_DECISIONS = 40

@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from . import acceptance_units as units
-from .acceptance_units import Lengths, Row
-from .document import format as fmt
-from .document.catalogue import Catalogue, catalogue
+from ..document import format as fmt
+from ..document.catalogue import Catalogue, catalogue
+from . import units
+from .units import Lengths, Row
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip

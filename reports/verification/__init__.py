@@ -1,0 +1,1 @@
+"""Is an acceptance document what it says?"""
