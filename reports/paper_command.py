@@ -11,12 +11,12 @@ from posstats.papers.drift.findings import CRITERIA
 from posstats.papers.drift.reproduction import Reproduction, reproduction
 from posstats.papers.drift.seeds import repeated, share
 
-from . import paper_document
 from .block.report import write_pages
 from .output.staged_folder import staged_folder
 from .output.timestamp import now
-from .paper_areas import run_areas
-from .paper_conclusions import Conclusion, conclusions
+from .papers.drift import document as paper_document
+from .papers.drift.areas import run_areas
+from .papers.drift.conclusions import Conclusion, conclusions
 
 SCHEMA = "posstats-comparison/1"
 

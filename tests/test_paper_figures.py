@@ -15,7 +15,7 @@ from scipy import stats
 from posstats.reports.block import bar_figures as figure_parallax
 from posstats.reports.block.line_figures import Panel, generalised, ordinary
 from posstats.reports.document.format import MICRORADIAN
-from posstats.reports.paper_figures import draw_area
+from posstats.reports.papers.drift.figures import draw_area
 
 N_STRIPS, PER_STRIP = 3, 10
 GREY, ABOVE = "#d5dae0", "#d55e00"

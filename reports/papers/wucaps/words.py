@@ -4,7 +4,7 @@ from posstats.papers.wucaps.adjustments import Control
 from posstats.papers.wucaps.experiment import Method
 from posstats.papers.wucaps.situations import Situation
 
-from .document.format import NARROW_SPACE
+from ...document.format import NARROW_SPACE
 
 TERRAIN: dict[Situation, str] = {"flat": "flat", "mountain": "mountainous"}
 SITUATIONS: dict[Situation, str] = {

@@ -14,10 +14,10 @@ from posstats.papers.drift.published import (
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from . import paper_tables
-from .block.view import first, rows
-from .document import format as fmt
-from .document.content import Bullets, Labelled, Paragraph, Part
+from ...block.view import first, rows
+from ...document import format as fmt
+from ...document.content import Bullets, Labelled, Paragraph, Part
+from . import tables as paper_tables
 
 _SAME_DIMENSIONS = (
     "The paper concludes that positions hardly matter because independent and dependent "

@@ -12,9 +12,9 @@ from posstats.papers.wucaps.experiment import Method, Row, SituationRun
 from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 
-from .document import format as fmt
-from .figures import style
-from .wucaps_words import CONTROL, METHODS, SITUATIONS
+from ...document import format as fmt
+from ...figures import style
+from .words import CONTROL, METHODS, SITUATIONS
 
 _LOOK: dict[Control | None, tuple[str, str]] = {
     None: (style.BLACK, "o"),

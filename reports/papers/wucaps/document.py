@@ -7,12 +7,12 @@ from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import repeated
 
-from .document import format as fmt
-from .document.key_figure import KeyFigure
-from .document.numbering import SIMULATED, ReportDocument, numbered
-from .paper_conclusions import Conclusion
-from .wucaps_sections import opening, sections
-from .wucaps_words import CONTROL, TERRAIN
+from ...document import format as fmt
+from ...document.key_figure import KeyFigure
+from ...document.numbering import SIMULATED, ReportDocument, numbered
+from ..drift.conclusions import Conclusion
+from .sections import opening, sections
+from .words import CONTROL, TERRAIN
 
 
 def build(

@@ -2,11 +2,11 @@
 
 from matplotlib.axes import Axes
 
-from .block.bar_figures import Bars, bar_figure, corrections, held_angles
-from .block.line_figures import Panel, generalised, legend_entries, ordinary, used_errors
-from .block.view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
-from .document import format as fmt
-from .figures import style
+from ...block.bar_figures import Bars, bar_figure, corrections, held_angles
+from ...block.line_figures import Panel, generalised, legend_entries, ordinary, used_errors
+from ...block.view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
+from ...document import format as fmt
+from ...figures import style
 
 
 def draw_area(area: int, results: Results) -> tuple[style.Drawing, style.Drawing, style.Drawing]:

@@ -6,15 +6,15 @@ from posstats.papers.drift.areas import area_scenario, area_seed
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from . import paper_tables as tables
-from .block import statistics_tables
-from .block.view import first
-from .document import format as fmt
-from .document.content import Content, Labelled, Paragraph, Part
-from .document.table import Table, prose_column, text_column
-from .figures.style import Drawing
-from .paper_conclusions import Conclusion
-from .paper_remarks import differences, printed_numbers
+from ...block import statistics_tables
+from ...block.view import first
+from ...document import format as fmt
+from ...document.content import Content, Labelled, Paragraph, Part
+from ...document.table import Table, prose_column, text_column
+from ...figures.style import Drawing
+from . import tables
+from .conclusions import Conclusion
+from .remarks import differences, printed_numbers
 
 Figures = Mapping[int, Sequence[Drawing]]
 """By area: Figures 1, 2 and 3."""

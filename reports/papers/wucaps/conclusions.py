@@ -14,9 +14,9 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import repeated, share
 from posstats.papers.wucaps.situations import Situation
 
-from .document import format as fmt
-from .paper_conclusions import Conclusion
-from .wucaps_words import BLOCKS, SITUATIONS, TERRAIN
+from ...document import format as fmt
+from ..drift.conclusions import Conclusion
+from .words import BLOCKS, SITUATIONS, TERRAIN
 
 _LIMITS = f"{fmt.fixed(MOST_HORIZONTAL, 1)} (H) and {fmt.fixed(MOST_VERTICAL, 1)} (V)"
 _NEAR = f"{fmt.fixed(100.0 * NOTICEABLE, 0)}\u00a0%"

@@ -14,9 +14,9 @@ from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import situation_scenario
 from posstats.synthetic import Scenario
 
-from .document import format as fmt
-from .document.table import Column, Table, text_column
-from .wucaps_words import CONTROL, METHOD_NOTES, METHODS, SITUATIONS
+from ...document import format as fmt
+from ...document.table import Column, Table, text_column
+from .words import CONTROL, METHOD_NOTES, METHODS, SITUATIONS
 
 MICROMETRE = fmt.Unit("µm", 1e3)  # of values in mm
 MILLIDEGREE = fmt.Unit("0.001°", float(np.degrees(1e3)))

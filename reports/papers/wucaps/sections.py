@@ -7,14 +7,14 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import flight_seed
 
-from . import wucaps_figures
-from . import wucaps_tables as tables
-from .block import statistics_tables
-from .document import format as fmt
-from .document.content import Bullets, Content, Paragraph, Part
-from .document.table import Table, prose_column, text_column
-from .paper_conclusions import Conclusion
-from .wucaps_words import CONTROL, SITUATIONS, TERRAIN
+from ...block import statistics_tables
+from ...document import format as fmt
+from ...document.content import Bullets, Content, Paragraph, Part
+from ...document.table import Table, prose_column, text_column
+from ..drift.conclusions import Conclusion
+from . import figures as wucaps_figures
+from . import tables
+from .words import CONTROL, SITUATIONS, TERRAIN
 
 _SIDES = ("horizontal", "vertical")
 

@@ -9,9 +9,9 @@ from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated, share, share_interval
 from posstats.synthetic import Scenario
 
-from .block.view import rows
-from .document import format as fmt
-from .document.table import Column, Table, count_column, number_column, p_column, text_column
+from ...block.view import rows
+from ...document import format as fmt
+from ...document.table import Column, Table, count_column, number_column, p_column, text_column
 
 MM_DECIMALS = 4  # as the paper prints them
 METHODS = {

@@ -9,8 +9,8 @@ from posstats.papers.drift.published import printed_gain
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated, share, share_interval
 
-from .block.view import Results, first
-from .document import format as fmt
+from ...block.view import Results, first
+from ...document import format as fmt
 
 ORTHOPHOTO_H_M = 5.0
 """Horizontal RMSE for orthophotos at 1:10 000 of flat and hilly ground: 0.5 mm at map scale."""

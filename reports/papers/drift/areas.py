@@ -12,12 +12,12 @@ from typing import Any
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
-from . import paper_figures
-from .block import figures
-from .block.folder import write_analysis
-from .document import table as tables
-from .figures.style import Drawing
-from .output.progress import progress_bar
+from ...block import figures
+from ...block.folder import write_analysis
+from ...document import table as tables
+from ...figures.style import Drawing
+from ...output.progress import progress_bar
+from . import figures as paper_figures
 
 _Numbers = tuple[dict[str, Any], TrueCauses]
 

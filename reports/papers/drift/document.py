@@ -6,11 +6,11 @@ from posstats import __version__
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from .document import format as fmt
-from .document.key_figure import KeyFigure
-from .document.numbering import SIMULATED, ReportDocument, numbered
-from .paper_conclusions import Conclusion
-from .paper_sections import Figures, opening, sections
+from ...document import format as fmt
+from ...document.key_figure import KeyFigure
+from ...document.numbering import SIMULATED, ReportDocument, numbered
+from .conclusions import Conclusion
+from .sections import Figures, opening, sections
 
 
 def build(

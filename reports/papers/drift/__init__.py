@@ -1,0 +1,1 @@
+"""The first paper: drift of POS angles."""

@@ -1,0 +1,1 @@
+"""The second paper: the POS calibrates itself in the adjustment."""
