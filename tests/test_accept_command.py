@@ -12,10 +12,10 @@ from small_scenario import small_block
 
 from posstats.acceptance.assessment import ChosenStatement
 from posstats.formats.block_folder import write_block
-from posstats.reports.accept_command import length_m
 from posstats.reports.acceptance.data import _filled
 from posstats.reports.acceptance.units import Lengths, margin
-from posstats.reports.cli import cli
+from posstats.reports.commands.accept import length_m
+from posstats.reports.commands.cli import cli
 from posstats.reports.document.format import METRE, MINUS
 from posstats.reports.typefaces.cjk import faces
 

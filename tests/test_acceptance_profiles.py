@@ -24,7 +24,7 @@ from posstats.acceptance.profile_files import (
 from posstats.acceptance.profile_values import PLACEHOLDERS
 from posstats.acceptance.quantity_names import COUNTED_BEYOND, QUANTITIES
 from posstats.errors import PosstatsError
-from posstats.reports.cli import cli
+from posstats.reports.commands.cli import cli
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 OWN = "[[requirement]]\nid = 'a'\nquantity = 'rmse_h'\nlimit = 1\n"

@@ -21,7 +21,7 @@ from posstats.reports.adjustment import (
 from posstats.reports.adjustment import (
     tables as adjustment_tables,
 )
-from posstats.reports.cli import cli
+from posstats.reports.commands.cli import cli
 from posstats.reports.pages import html
 
 POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}

@@ -80,7 +80,7 @@ def test_kernels_know_arrays_and_not_blocks(name):
 
 
 def test_the_command_starts_without_the_heavy_libraries():
-    code = "import sys, posstats.reports.cli; print(*sys.modules)"
+    code = "import sys, posstats.reports.commands.cli; print(*sys.modules)"
     loaded = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     ).stdout.split()

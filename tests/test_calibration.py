@@ -29,7 +29,7 @@ from posstats.formats.block_folder import write_block
 from posstats.numerics.bundle import adjust
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.papers.wucaps.adjustments import adjusted_block, control_points, pos_parameters
-from posstats.reports.cli import cli
+from posstats.reports.commands.cli import cli
 
 ROLL_PITCH_YAW = np.array([-3e-3, 5e-3, 8e-3])
 LEVER_ARM_M = np.array([0.4, -0.3, 1.2])

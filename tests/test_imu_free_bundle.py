@@ -22,7 +22,7 @@ from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 from posstats.reports.block import document as block_document
-from posstats.reports.cli import cli
+from posstats.reports.commands.cli import cli
 from posstats.reports.pages import html
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}

@@ -21,8 +21,8 @@ from posstats.papers.drift.areas import AREAS, area_scenario, area_seed, true_ca
 from posstats.papers.drift.findings import AreaFindings, find
 from posstats.papers.drift.published import published
 from posstats.papers.drift.seeds import repeated
-from posstats.reports import paper_command
-from posstats.reports.cli import cli
+from posstats.reports.commands import paper as paper_command
+from posstats.reports.commands.cli import cli
 from posstats.reports.output.staged_folder import staged_folder
 from posstats.reports.papers.drift import areas as paper_areas
 from posstats.synthetic import simulate

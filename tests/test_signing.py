@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import NoEncryption, pkcs12
 
 from posstats.errors import PosstatsError
 from posstats.reports.archive.signing import PyHankoMissingError, SigningError, sign
-from posstats.reports.sign_command import sign_file
+from posstats.reports.commands.sign import sign_file
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

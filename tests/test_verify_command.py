@@ -25,9 +25,9 @@ from posstats.analysis.steps import Settings, analyse
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.plain_values import to_json
-from posstats.reports import verify_command
 from posstats.reports.archive.file import LARGEST_BYTES
-from posstats.reports.cli import cli
+from posstats.reports.commands import verify as verify_command
+from posstats.reports.commands.cli import cli
 from posstats.reports.verification import words
 from posstats.reports.verification.recomputation import recompute
 from posstats.reports.verification.values import TOLERANCE

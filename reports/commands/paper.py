@@ -11,12 +11,12 @@ from posstats.papers.drift.findings import CRITERIA
 from posstats.papers.drift.reproduction import Reproduction, reproduction
 from posstats.papers.drift.seeds import repeated, share
 
-from .block.report import write_pages
-from .output.staged_folder import staged_folder
-from .output.timestamp import now
-from .papers.drift import document as paper_document
-from .papers.drift.areas import run_areas
-from .papers.drift.conclusions import Conclusion, conclusions
+from ..block.report import write_pages
+from ..output.staged_folder import staged_folder
+from ..output.timestamp import now
+from ..papers.drift import document as paper_document
+from ..papers.drift.areas import run_areas
+from ..papers.drift.conclusions import Conclusion, conclusions
 
 SCHEMA = "posstats-comparison/1"
 

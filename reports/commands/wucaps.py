@@ -15,13 +15,13 @@ from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import SITUATIONS, Situation
 from posstats.plain_values import versions
 
-from .block.report import write_pages
-from .output.progress import progress_bar
-from .output.staged_folder import staged_folder
-from .output.timestamp import now
-from .papers.drift.conclusions import Conclusion
-from .papers.wucaps import document as wucaps_document
-from .papers.wucaps.conclusions import beyond, conclusions
+from ..block.report import write_pages
+from ..output.progress import progress_bar
+from ..output.staged_folder import staged_folder
+from ..output.timestamp import now
+from ..papers.drift.conclusions import Conclusion
+from ..papers.wucaps import document as wucaps_document
+from ..papers.wucaps.conclusions import beyond, conclusions
 
 SCHEMA = "posstats-wucaps/1"
 

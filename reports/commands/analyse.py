@@ -7,12 +7,12 @@ from posstats.adjustment.calibration import calibrated
 from posstats.analysis.steps import Settings, analyse
 from posstats.formats.block_folder import read_block
 
-from .block.folder import write_analysis
-from .block.report import write_report
-from .block.summary import summary
-from .output.progress import progress_bar
-from .output.staged_folder import staged_folder
-from .output.timestamp import now
+from ..block.folder import write_analysis
+from ..block.report import write_report
+from ..block.summary import summary
+from ..output.progress import progress_bar
+from ..output.staged_folder import staged_folder
+from ..output.timestamp import now
 
 
 def analyse_block(

@@ -14,14 +14,14 @@ from posstats.acceptance.profile_files import load_contract
 from posstats.errors import PosstatsError
 from posstats.plain_values import RESULTS_SCHEMA, to_json
 
-from .acceptance.data import Demand, assembled, embedded
-from .acceptance.writing import read_templates, write_document
-from .archive.reading import MALFORMED
-from .archive.writing import Attachment
-from .block.summary import WIDTH
-from .output.progress import Advance, progress_bar
-from .output.staged_folder import staged_folder
-from .output.timestamp import now
+from ..acceptance.data import Demand, assembled, embedded
+from ..acceptance.writing import read_templates, write_document
+from ..archive.reading import MALFORMED
+from ..archive.writing import Attachment
+from ..block.summary import WIDTH
+from ..output.progress import Advance, progress_bar
+from ..output.staged_folder import staged_folder
+from ..output.timestamp import now
 
 BLOCK_TOML = "block.toml"
 EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}

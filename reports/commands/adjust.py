@@ -13,13 +13,13 @@ from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 from posstats.plain_values import to_json
 
-from .adjustment import document as adjustment_document
-from .adjustment import verdict as adjustment_verdict
-from .block.report import write_pages
-from .block.summary import WIDTH
-from .output.progress import progress_bar
-from .output.staged_folder import staged_folder
-from .output.timestamp import now
+from ..adjustment import document as adjustment_document
+from ..adjustment import verdict as adjustment_verdict
+from ..block.report import write_pages
+from ..block.summary import WIDTH
+from ..output.progress import progress_bar
+from ..output.staged_folder import staged_folder
+from ..output.timestamp import now
 
 
 def control_choice(text: str | None) -> ControlChoice:

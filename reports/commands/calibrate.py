@@ -12,10 +12,10 @@ from posstats.adjustment.results import adjustment_results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
 
-from .adjustment import verdict as adjustment_verdict
-from .block.summary import WIDTH
-from .document import format as fmt
-from .output.progress import progress_bar
+from ..adjustment import verdict as adjustment_verdict
+from ..block.summary import WIDTH
+from ..document import format as fmt
+from ..output.progress import progress_bar
 
 
 def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> Iterator[str]:

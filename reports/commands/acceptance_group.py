@@ -17,7 +17,7 @@ class _Length(click.ParamType[float]):
     name = "length"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        from .accept_command import length_m
+        from .accept import length_m
 
         if isinstance(value, float):
             return value
@@ -104,7 +104,7 @@ def accept(
     """
     from posstats.acceptance.product import Product
 
-    from .accept_command import EXIT_CODES, Wish, judge
+    from .accept import EXIT_CODES, Wish, judge
 
     if class_both is not None and (class_h is not None or class_v is not None):
         raise click.UsageError("give either --class, or --class-h and --class-v")
@@ -142,7 +142,7 @@ def profiles(name: str | None) -> None:
       posstats profiles asprs-2024
       posstats profiles contract.toml
     """
-    from .profiles_command import describe_profile, list_profiles
+    from .profiles import describe_profile, list_profiles
 
     for line in list_profiles() if name is None else describe_profile(name):
         click.echo(line)
@@ -171,7 +171,7 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     Example:
       posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
     """
-    from .sign_command import sign_file
+    from .sign import sign_file
 
     for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
         click.echo(line)
@@ -202,8 +202,8 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
     Example:
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
-    from .verification.questions import holds
-    from .verify_command import verify_file
+    from ..verification.questions import holds
+    from .verify import verify_file
 
     answers = verify_file(file, inputs, trust, templates)
     for each in answers:

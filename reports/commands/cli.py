@@ -11,7 +11,7 @@ import click
 
 from posstats import __version__
 
-from . import acceptance_cli
+from . import acceptance_group as acceptance_cli
 from .command_line import FOLDER, clear_errors, default_out
 
 
@@ -91,7 +91,7 @@ def analyse(
     """
     from posstats.analysis.steps import Settings
 
-    from .analyse_command import analyse_block
+    from .analyse import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
     target = out or default_out(block)
@@ -167,7 +167,7 @@ def adjust(
     """
     from posstats.adjustment import AdjustmentSettings
 
-    from .adjust_command import adjust_folder, control_choice
+    from .adjust import adjust_folder, control_choice
 
     settings = AdjustmentSettings(
         control=control_choice(control),
@@ -220,8 +220,8 @@ def calibrate(
     """
     from posstats.adjustment import AdjustmentSettings
 
-    from .adjust_command import control_choice
-    from .calibrate_command import calibrate_folder
+    from .adjust import control_choice
+    from .calibrate import calibrate_folder
 
     settings = AdjustmentSettings(control=control_choice(control), drift=drift, lever_arm=lever_arm)
     for line in calibrate_folder(block, out, settings):
@@ -246,7 +246,7 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
     Example:
       posstats paper --out paper --seed 7
     """
-    from .paper_command import reproduce_paper
+    from .paper import reproduce_paper
 
     for line in reproduce_paper(out, seed, pdf=not no_pdf):
         click.echo(line)
@@ -270,7 +270,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     Example:
       posstats wucaps --out wucaps --seed 7
     """
-    from .wucaps_command import reproduce_wucaps
+    from .wucaps import reproduce_wucaps
 
     for line in reproduce_wucaps(out, seed, pdf=not no_pdf):
         click.echo(line)
@@ -300,7 +300,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
     """
     from posstats.synthetic import load_scenario, shipped_scenario
 
-    from .block_commands import simulate_block
+    from .blocks import simulate_block
 
     if scenario is not None and area is None:
         chosen = load_scenario(scenario)
@@ -324,7 +324,7 @@ def check(block: Path) -> None:
     Example:
       posstats check flight7
     """
-    from .block_commands import check_block
+    from .blocks import check_block
 
     for line in check_block(block):
         click.echo(line)

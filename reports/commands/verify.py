@@ -9,15 +9,15 @@ from posstats import __version__
 from posstats.errors import PosstatsError
 from posstats.plain_values import versions
 
-from .acceptance.data import reassess
-from .acceptance.page import render_document
-from .acceptance.writing import read_templates
-from .archive.file import read_file
-from .verification.questions import verify
-from .verification.recomputation import recompute
-from .verification.signature import read_trust
-from .verification.steps import Steps
-from .verification.words import Answer
+from ..acceptance.data import reassess
+from ..acceptance.page import render_document
+from ..acceptance.writing import read_templates
+from ..archive.file import read_file
+from ..verification.questions import verify
+from ..verification.recomputation import recompute
+from ..verification.signature import read_trust
+from ..verification.steps import Steps
+from ..verification.words import Answer
 
 
 def verify_file(

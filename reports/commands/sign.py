@@ -8,9 +8,9 @@ from pathlib import Path
 
 from posstats.errors import PosstatsError
 
-from .archive.file import UnreadableArchiveError, part, read_file
-from .archive.reading import open_archive
-from .archive.signing import require_pyhanko, sign
+from ..archive.file import UnreadableArchiveError, part, read_file
+from ..archive.reading import open_archive
+from ..archive.signing import require_pyhanko, sign
 
 LARGEST_KEY_BYTES = 1_000_000
 

@@ -8,7 +8,7 @@ from posstats.block.model import Block
 from posstats.formats.block_folder import read_block, write_block
 from posstats.synthetic import Scenario, simulate
 
-from .output.staged_folder import staged_folder
+from ..output.staged_folder import staged_folder
 
 
 def simulate_block(scenario: Scenario, out: Path, seed: int | None) -> Iterator[str]:
