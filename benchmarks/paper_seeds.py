@@ -1,6 +1,6 @@
 """Repeat the paper's experiment with many seeds and store what each area showed.
 
-Writes posstats/experiment/seeds.csv, from which `posstats paper` states how often its findings
+Writes posstats/papers/drift/seeds.csv, from which `posstats paper` states how often its findings
 come out. To be run again whenever a scenario or the analysis changes its numbers:
 
     python benchmarks/paper_seeds.py --seeds 100 --processes 2
