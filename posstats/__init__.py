@@ -6,6 +6,8 @@ The names below are imported when they are first used, so that ``posstats --help
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from posstats.version import __version__
+
 if TYPE_CHECKING:
     from posstats.analysis.regression import fit_drift
     from posstats.analysis.steps import Settings, analyse
@@ -14,8 +16,6 @@ if TYPE_CHECKING:
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
     from posstats.formats.block_folder import read_block
     from posstats.geometry.stereo.relative_orientation import orient
-
-__version__ = "0.1.0"
 
 _HOME = {
     "Block": "block.model",
@@ -38,6 +38,7 @@ __all__ = [
     "GeometryError",
     "PosstatsError",
     "Settings",
+    "__version__",
     "analyse",
     "fit_drift",
     "orient",

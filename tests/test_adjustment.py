@@ -16,11 +16,11 @@ from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
+from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
 from posstats.geometry.ground.intersection import intersect
 from posstats.numerics.kernels.rotation import wrapped
-from posstats.plain_values import to_json
 from posstats.reports.adjustment.verdict import paragraph
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"

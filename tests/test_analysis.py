@@ -12,6 +12,7 @@ from posstats import PosstatsError, Settings, analyse, orient, read_block, stere
 from posstats.analysis.results import results
 from posstats.analysis.steps import Analysis
 from posstats.block.model import Block
+from posstats.contract.files import as_values
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import angles_from_rotation
@@ -28,7 +29,7 @@ def analysis(block: Block) -> Analysis:
 
 
 def block_row(analysis: Analysis, angle: str, frame: str = "ground"):
-    rows = results(analysis)["regression"]
+    rows = as_values(results(analysis))["regression"]
     return next(
         row for row in rows if (row["angle"], row["frame"], row["scope"]) == (angle, frame, "block")
     )
@@ -39,7 +40,7 @@ def form_of(analysis: Analysis) -> dict[str, str]:
 
 
 def test_the_drifting_angle_is_named_chosen_and_corrected(analysis):
-    assert results(analysis)["verdict"]["cause"] == "omega"
+    assert as_values(results(analysis))["verdict"]["cause"] == "omega"
     assert form_of(analysis) == {"omega": "linear", "phi": "none", "kappa": "none"}
     raw, left = mean_px(analysis.raw_px), mean_px(analysis.corrected_px["selected"])
     assert raw > 20.0
@@ -64,7 +65,7 @@ def test_only_the_angle_in_error_reduces_the_parallax(analysis):
 def test_check_points_gain_from_the_correction(analysis):
     rows = {
         row["orientation"]: row
-        for row in results(analysis)["check_points"]
+        for row in as_values(results(analysis))["check_points"]
         if row["translation_removed"]
     }
     for name in ("rmse_horizontal_m", "rmse_vertical_m"):
@@ -111,7 +112,7 @@ def test_auto_keeps_the_ground_frame_for_a_drift(block):
 
 
 def summary_numbers(analysis: Analysis) -> np.ndarray:
-    values = results(analysis)
+    values = as_values(results(analysis))
     fits = [
         (row["r_squared"], row["f_statistic"], row["gls_slope_rad_per_s"] * 1e6)
         for row in values["regression"]
@@ -191,7 +192,7 @@ def test_without_stereo_models_there_is_nothing_to_analyse(block):
 
 
 def test_the_results_are_plain_json_without_nan(analysis):
-    text = json.dumps(results(analysis), allow_nan=False)
+    text = json.dumps(as_values(results(analysis)), allow_nan=False)
     assert json.loads(text)["schema"] == "posstats-results/1"
 
 
@@ -234,7 +235,7 @@ def test_a_low_cost_drone_runs_end_to_end():
 
 def test_models_of_too_few_points_are_listed_without_a_value():
     sparse = small_block(tie_points={"per_model": 3})
-    values = results(analyse(sparse))
+    values = as_values(results(analyse(sparse)))
     assert {row["pos_px"] for row in values["models"] if row["n_points"] < 6} == {None}
     few = [row for row in values["models"] if row["n_points"] < 6]
     assert few
@@ -246,7 +247,7 @@ def test_models_of_images_without_adjusted_orientation_have_no_adjusted_parallax
     angles[0] = np.nan
     partial = replace(block, adjusted=replace(block.adjusted, angles_rad=angles))
     analysis = analyse(partial)
-    rows = results(analysis)["models"]
+    rows = as_values(results(analysis))["models"]
     first = block.orientations.image[0]
     missing = [row for row in rows if first in (row["left"], row["right"])]
     others = [row["adjusted_px"] for row in rows if row not in missing]
@@ -257,6 +258,6 @@ def test_models_of_images_without_adjusted_orientation_have_no_adjusted_parallax
 
 
 def test_survey_accuracy_stands_beside_every_check_point(analysis):
-    points = results(analysis)["check_point_residuals"]
+    points = as_values(results(analysis))["check_point_residuals"]
     assert points
     assert all(row["survey_sigma_xy_m"] > 0.0 and row["survey_sigma_z_m"] > 0.0 for row in points)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from posstats.analysis.angle_errors import AngleErrors
-from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.correction import predicted_errors
 from posstats.analysis.regression import regress
 from posstats.analysis.rules import decide, load_rules
 from posstats.block.model import Orientations
+from posstats.block.turned import corrected
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
 
 SYSTEMS = ["omega-phi-kappa", "phi-omega-kappa"]

@@ -14,6 +14,7 @@ from strip_scene import block, scene
 from posstats.analysis.results import results
 from posstats.analysis.steps import Settings, analyse
 from posstats.block.image_pairs import stereo_models
+from posstats.contract.files import as_values
 from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
@@ -78,7 +79,7 @@ def test_every_key_of_the_results_is_described():
     turned = oriented.with_angles(oriented.angles_rad + 1e-5 * np.arange(5)[:, None])
     made = block(turned, ground, is_check=np.arange(20) < 4)
     analysis = analyse(replace(made, adjusted=oriented), Settings(errors="bundle", frame="auto"))
-    values = results(analysis)
+    values = as_values(results(analysis))
     packages = set(values.pop("versions"))
     page = (DOCS / "results.md").read_text(encoding="utf-8")
     named = set(re.findall(r"`(\w+)`", page)) | set(re.findall(r"^### (\w+)$", page, re.MULTILINE))
@@ -137,7 +138,7 @@ def test_the_worked_example_makes_the_block_it_shows(tmp_path, monkeypatch):
 def test_the_worked_example_quotes_its_verdict():
     """Oracle: the analysis; to 2 %, so that other robust weights leave the text true."""
     block = read_block(shared_path("data", "seneca"))
-    values = results(analyse(block))
+    values = as_values(results(analyse(block)))
     text = (DOCS / "example-seneca.md").read_text(encoding="utf-8")
     verdict = values["verdict"]
     quoted = re.search(

@@ -18,6 +18,7 @@ from posstats.analysis.results import results
 from posstats.analysis.steps import Settings, analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
+from posstats.contract.files import as_values
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector, wrapped
@@ -94,7 +95,7 @@ def test_the_covariance_is_that_of_a_dense_adjustment():
 
 def test_the_injected_drift_lies_in_the_interval_of_gls(analysis):
     row = next(
-        each for each in results(analysis)["regression"]
+        each for each in as_values(results(analysis))["regression"]
         if (each["angle"], each["scope"]) == ("omega", "block")
     )  # fmt: skip
     low, high = row["gls_slope_ci95"]
@@ -161,7 +162,7 @@ def test_check_points_take_no_part_and_gain(block, analysis):
     other, _ = adjusted(replace(block, tie_points=moved))
     np.testing.assert_array_equal(other.adjusted.angles_rad, analysis.bundle.adjusted.angles_rad)
     rows = {(each["orientation"], each["translation_removed"]): each
-            for each in results(analysis)["check_points"]}  # fmt: skip
+            for each in as_values(results(analysis))["check_points"]}  # fmt: skip
     for removed in (False, True):
         for name in ("rmse_horizontal_m", "rmse_vertical_m"):
             assert rows["bundle", removed][name] < 0.1 * rows["pos", removed][name]
@@ -262,7 +263,7 @@ def test_blocks_that_are_too_large_are_refused():
 
 
 def test_the_report_tells_of_the_bundle_and_of_its_check_points(analysis):
-    values = results(analysis)
+    values = as_values(results(analysis))
     page = html.render(block_document.build(values))
     for words in (
         "They are estimated by a bundle adjustment of the whole block",
@@ -276,7 +277,7 @@ def test_the_report_tells_of_the_bundle_and_of_its_check_points(analysis):
 
 
 def test_the_report_without_a_bundle_has_no_such_section(block):
-    values = results(analyse(block, Settings(errors="adjusted")))
+    values = as_values(results(analyse(block, Settings(errors="adjusted"))))
     assert values["bundle"] is None
     assert 'id="table-bundle"' not in html.render(block_document.build(values))
 
@@ -296,7 +297,7 @@ def test_the_injected_drift_of_the_real_block_is_found():
     found = analyse(read_block(folder), Settings(errors="bundle"))
     injected = json.loads((folder / "injected.json").read_text(encoding="utf-8"))
     row = next(
-        each for each in results(found)["regression"]
+        each for each in as_values(results(found))["regression"]
         if (each["angle"], each["scope"]) == ("omega", "block")
     )  # fmt: skip
     assert abs(row["gls_slope_rad_per_s"] - injected["slope_rad_per_s"][0]) < 3e-8

@@ -7,11 +7,12 @@ import pytest
 from small_scenario import small_block
 
 from posstats.analysis.angle_errors import AngleErrors, adjusted_errors, in_camera_frame
-from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.correction import predicted_errors
 from posstats.analysis.out_of_sample import LEAVE_HALF_OUT, LEAVE_STRIP_OUT, out_of_sample_parallax
 from posstats.analysis.regression import regress
 from posstats.analysis.rules import decide, load_rules
 from posstats.block.image_pairs import stereo_models
+from posstats.block.turned import corrected
 from posstats.geometry.stereo.parallax import model_rms_px
 
 

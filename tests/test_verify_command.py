@@ -22,9 +22,9 @@ from small_scenario import small_block
 
 from posstats.analysis.results import results
 from posstats.analysis.steps import Settings, analyse
+from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
-from posstats.plain_values import to_json
 from posstats.reports.archive.file import LARGEST_BYTES
 from posstats.reports.commands import verify as verify_command
 from posstats.reports.commands.cli import cli
@@ -129,7 +129,8 @@ def analysed(tmp_path_factory) -> tuple[Path, dict]:
         (Path(__file__).parents[1] / "posstats" / "rules" / "strict.toml").read_bytes()
     )
     settings = Settings(rules="strict", frame="auto")
-    found = results(analyse(read_block(folder), settings), created="2026-01-02T03:04:05+00:00")
+    analysis = analyse(read_block(folder), settings)
+    found = results(analysis, created="2026-01-02T03:04:05+00:00")
     return folder, json.loads(to_json(found))
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from posstats import __version__
 from posstats.acceptance.accuracy_statement import (
     ISO_19157,
     AccuracyStatement,
@@ -21,7 +20,9 @@ from posstats.acceptance.assessment import Assessment, Finding
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.reasons import Reason
-from posstats.plain_values import plain, versions
+from posstats.contract.record import plain
+from posstats.contract.versions import versions
+from posstats.version import __version__
 
 Row = dict[str, Any]
 Results = Mapping[str, Any]

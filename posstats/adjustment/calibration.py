@@ -15,11 +15,10 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats import __version__
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
-from posstats.analysis.correction import corrected
 from posstats.block.model import Block, Orientations
+from posstats.block.turned import corrected
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.text_table import sha256
 from posstats.formats.toml_table import (
@@ -36,6 +35,7 @@ from posstats.numerics.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
 from posstats.numerics.bundle.pos_observations import antenna_positions, imu_angles
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation
+from posstats.version import __version__
 
 _Floats = NDArray[np.float64]
 

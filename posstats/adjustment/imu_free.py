@@ -23,7 +23,6 @@ from posstats.adjustment.screening import (
     without_rays,
 )
 from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
-from posstats.analysis.observability import weak_prior_rad
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
 from posstats.geometry.ground.check_points import (
@@ -36,6 +35,7 @@ from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.system import BundleSystem, State
 from posstats.numerics.solvers.arrow import ArrowFactor, factorised
+from posstats.numerics.solvers.weak_prior import weak_prior_rad
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

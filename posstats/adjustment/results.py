@@ -12,19 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats import __version__
 from posstats.adjustment.check_points import camera_values
 from posstats.adjustment.settings import INTERIOR
 from posstats.adjustment.significance import HIGH_CORRELATION
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.steps import Adjustment
 from posstats.adjustment.weights import variance_factors
-from posstats.analysis.rows import accuracy_row, block_row, image_rows, residual_rows
+from posstats.contract.record import plain
+from posstats.contract.versions import versions
 from posstats.formats.adjusted_writing import write_adjusted, write_points
+from posstats.geometry.ground.check_points import check_point_accuracy
+from posstats.geometry.ground.rows import block_summary, image_places, residual_rows
 from posstats.numerics.bundle.parameters import UNITS
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, wrapped
-from posstats.plain_values import plain, versions
+from posstats.version import __version__
 
 _Floats = NDArray[np.float64]
 Row = dict[str, Any]
@@ -70,12 +72,12 @@ def adjustment_results(adjustment: Adjustment, *, created: str | None = None) ->
             "n_rejected_rays": int(adjustment.rejected.sum()),
             "snooping_complete": adjustment.snooping.complete,
             "check_points": [
-                accuracy_row(residuals, translation_removed=removed)
+                vars(check_point_accuracy(residuals, translation_removed=removed))
                 for residuals in (adjustment.check_points, adjustment.pos_check_points)
                 for removed in (False, True)
             ],
             "check_point_residuals": [
-                row
+                vars(row)
                 for residuals in (adjustment.check_points, adjustment.pos_check_points)
                 for row in residual_rows(residuals)
             ],
@@ -83,7 +85,7 @@ def adjustment_results(adjustment: Adjustment, *, created: str | None = None) ->
             "cameras": list(_camera_rows(adjustment)),
             "orientations": list(_orientation_rows(adjustment)),
             "points": _points(adjustment),
-            "images": image_rows(adjustment.block),
+            "images": [vars(each) for each in image_places(adjustment.block)],
             "image_residuals": list(_cells(adjustment)),
             "warnings": [*adjustment.block.warnings, *_warnings(adjustment)],
         }
@@ -126,7 +128,9 @@ def all_points(adjustment: Adjustment) -> tuple[_Floats, _Floats, NDArray[np.obj
 
 
 def _block(adjustment: Adjustment) -> Row:
-    return block_row(adjustment.block) | {
+    summary = block_summary(adjustment.block)
+    return vars(summary) | {
+        "inputs": [vars(each) for each in summary.inputs],
         "n_control_points": len(adjustment.problem.control.point),
         "n_rays": int((~adjustment.adjusted.rejected).sum()),
         "self_calibrated": adjustment.settings.self_calibration != "none",

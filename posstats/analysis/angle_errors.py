@@ -20,7 +20,6 @@ from posstats.analysis.observability import (
     EstimatedAngles,
     Observability,
     observability,
-    weak_prior_rad,
 )
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
@@ -34,6 +33,7 @@ from posstats.numerics.kernels.rotation import (
     vector_from_rotation,
     wrapped,
 )
+from posstats.numerics.solvers.weak_prior import weak_prior_rad
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

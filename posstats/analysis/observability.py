@@ -11,14 +11,6 @@ _Bools = NDArray[np.bool_]
 _Ids = NDArray[np.object_]
 
 UNDETERMINED_SHARE = 0.1  # of the prior standard deviation
-_SMALLEST_ANGLE_PRIOR_RAD = float(np.radians(1.0))
-_ANGLE_PRIOR_FACTOR = 10.0
-
-
-def weak_prior_rad(sigma_angles_rad: _Floats) -> _Floats:
-    """Standard deviations of POS angles that give an adjustment a solution, and hardly a pull."""
-    weak: _Floats = np.maximum(_SMALLEST_ANGLE_PRIOR_RAD, _ANGLE_PRIOR_FACTOR * sigma_angles_rad)
-    return weak
 
 
 @dataclass(frozen=True)

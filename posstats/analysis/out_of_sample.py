@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.analysis.angle_errors import AngleErrors
-from posstats.analysis.correction import axis_of, corrected, fitted_values
+from posstats.analysis.correction import axis_of, fitted_values
 from posstats.analysis.regression import (
     BLOCK_SCOPE,
     AngleSample,
@@ -17,6 +17,7 @@ from posstats.analysis.regression import (
 )
 from posstats.analysis.rules import Decision, OutOfSampleParallax
 from posstats.block.image_pairs import StereoModels
+from posstats.block.turned import corrected
 from posstats.geometry.stereo.parallax import model_rms_px
 
 _Floats = NDArray[np.float64]

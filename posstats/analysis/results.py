@@ -1,102 +1,88 @@
-"""Analysis -> results.json: plain values, described in ``docs/results.md``.
-
-Lengths in metres unless the name says mm or px, angles in radians, rates in rad/s. What is not
-available or cannot be tested is null.
-"""
-
-from typing import Any
+"""Analysis -> the contract's `Results`, of which ``results.json`` and every page are made."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from posstats import __version__
 from posstats.analysis.rows import (
-    accuracy_row,
     angle_error_rows,
     angle_error_summary_rows,
-    block_row,
     bundle_row,
     corrected_parallax_rows,
     error_source_rows,
     frame_rows,
-    image_rows,
     model_rows,
     parallax_rows,
     regression_row,
-    residual_rows,
     selection_rows,
 )
 from posstats.analysis.steps import Analysis
+from posstats.contract.record import record
+from posstats.contract.results import (
+    AnalysedBlock,
+    AnalysisSettings,
+    Observability,
+    Results,
+    Units,
+    Verdict,
+)
+from posstats.contract.versions import versions
+from posstats.geometry.ground.check_points import check_point_accuracy
+from posstats.geometry.ground.rows import block_summary, image_places, residual_rows
 from posstats.geometry.stereo.parallax import NOTICEABLE, block_statistics
 from posstats.geometry.stereo.relative_orientation import RelativeOrientation
-from posstats.plain_values import RESULTS_SCHEMA, plain, versions
-
-Row = dict[str, Any]
+from posstats.version import __version__
 
 
-def results(analysis: Analysis, *, created: str | None = None) -> dict[str, Any]:
-    """The results of an analysis as a dictionary of plain values.
+def results(analysis: Analysis, *, created: str | None = None) -> Results:
+    """The results of an analysis as they are written down.
 
     Parameters
     ----------
     created
         ISO 8601 time stamp to put in; no clock is read here.
     """
-    values: dict[str, Any] = plain(
-        {
-            "schema": RESULTS_SCHEMA,
-            "posstats_version": __version__,
-            "created": created,
-            "versions": versions(),
-            "block": _block(analysis),
-            "settings": _settings(analysis),
-            "units": {"mm": bool(np.isfinite(analysis.models.pixel_size_mm).all())},
-            "verdict": _verdict(analysis),
-            "expected_noise_px": _expected_noise_px(analysis),
-            "images": image_rows(analysis.block),
-            "parallax": parallax_rows(analysis),
-            "models": model_rows(analysis),
-            "error_sources": error_source_rows(analysis),
-            "angle_errors": angle_error_rows(analysis.frames),
-            "angle_error_summary": [
-                row for frame in analysis.frames for row in angle_error_summary_rows(frame)
-            ],
-            "bundle": None if analysis.bundle is None else bundle_row(analysis.bundle),
-            "regression": [
-                regression_row(each) for frame in analysis.frames for each in frame.regressions
-            ],
-            "frames": frame_rows(analysis),
-            "selection": selection_rows(analysis.chosen),
-            "corrected_parallax": corrected_parallax_rows(analysis),
-            "check_points": [
-                accuracy_row(residuals, translation_removed=removed)
-                for residuals in analysis.check_points
-                for removed in (False, True)
-            ],
-            "check_point_residuals": [
-                row for residuals in analysis.check_points for row in residual_rows(residuals)
-            ],
-            "observability": [
-                {
-                    "scope": each.scope,
-                    "unobservable": each.unobservable,
-                    "images": each.images,
-                }
-                for each in analysis.frames[0].errors.observability
-            ],
-            "warnings": [*analysis.block.warnings, *analysis.frames[0].errors.warnings],
-        }
+    frames, block = analysis.frames, analysis.block
+    summary = vars(block_summary(block))
+    residuals = analysis.check_points
+    return Results(
+        posstats_version=__version__,
+        created=created,
+        versions=versions(),
+        block=AnalysedBlock(**summary, n_models=len(analysis.models)),
+        settings=_settings(analysis),
+        units=Units(mm=bool(np.isfinite(analysis.models.pixel_size_mm).all())),
+        verdict=_verdict(analysis),
+        expected_noise_px=_expected_noise_px(analysis),
+        images=image_places(block),
+        parallax=tuple(parallax_rows(analysis)),
+        models=tuple(model_rows(analysis)),
+        error_sources=tuple(error_source_rows(analysis)),
+        angle_errors=tuple(angle_error_rows(frames)),
+        angle_error_summary=tuple(
+            row for frame in frames for row in angle_error_summary_rows(frame)
+        ),
+        bundle=None if analysis.bundle is None else bundle_row(analysis.bundle),
+        regression=tuple(regression_row(each) for frame in frames for each in frame.regressions),
+        frames=tuple(frame_rows(analysis)),
+        selection=tuple(selection_rows(analysis.chosen)),
+        corrected_parallax=tuple(corrected_parallax_rows(analysis)),
+        check_points=tuple(
+            check_point_accuracy(each, translation_removed=removed)
+            for each in residuals
+            for removed in (False, True)
+        ),
+        check_point_residuals=tuple(row for each in residuals for row in residual_rows(each)),
+        observability=tuple(
+            Observability(scope=each.scope, unobservable=each.unobservable, images=each.images)
+            for each in frames[0].errors.observability
+        ),
+        warnings=(*block.warnings, *frames[0].errors.warnings),
     )
-    return values
 
 
-def _block(analysis: Analysis) -> Row:
-    return block_row(analysis.block) | {"n_models": len(analysis.models)}
-
-
-def _settings(analysis: Analysis) -> Row:
+def _settings(analysis: Analysis) -> AnalysisSettings:
     settings = analysis.settings
-    return {
+    values = {
         "rules": str(settings.rules),
         "scope": settings.scope,
         "errors": settings.errors,
@@ -108,15 +94,16 @@ def _settings(analysis: Analysis) -> Row:
         "angle_rad": analysis.block.accuracy.angle_rad,
         "image_px": analysis.block.accuracy.image_px,
     }
+    return record(AnalysisSettings, values)
 
 
-def _verdict(analysis: Analysis) -> Row:
+def _verdict(analysis: Analysis) -> Verdict:
     levels = {
         "raw": analysis.raw_px,
         "relative": analysis.independent.y_parallax_rms_px,
         "corrected": analysis.corrected_px["selected"],
     }
-    row: Row = {}
+    row: dict[str, object] = {}
     for name, rms_px in levels.items():
         mean = block_statistics(analysis.models, rms_px)
         row |= {f"{name}_px": mean.mean_px, f"{name}_mm": mean.mean_mm}
@@ -125,10 +112,10 @@ def _verdict(analysis: Analysis) -> Row:
     row["corrected_angles"] = list(
         dict.fromkeys(each.angle for each in analysis.chosen.decisions if each.correct)
     )
-    return row
+    return record(Verdict, row)
 
 
-def _cause(analysis: Analysis) -> Row:
+def _cause(analysis: Analysis) -> dict[str, object]:
     """The angle that keeps the parallax when it is held, and its share among the three.
 
     An angle is named when holding it keeps more parallax than holding either other angle and

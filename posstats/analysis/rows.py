@@ -1,7 +1,6 @@
-"""Rows of results.json, one function per list; ``docs/results.md`` names every key."""
+"""Rows of ``results.json``, one function per list."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,15 +8,24 @@ from numpy.typing import NDArray
 from posstats.adjustment.imu_free import ImuFreeBundle
 from posstats.analysis.regression import AngleRegression
 from posstats.analysis.steps import Analysis, FrameAnalysis
-from posstats.block.model import Block
-from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_accuracy
-from posstats.geometry.ground.footprints import footprints
+from posstats.contract.record import record
+from posstats.contract.results import (
+    AngleErrorSummary,
+    Bundle,
+    CorrectedParallax,
+    ErrorSource,
+    FrameComparison,
+    ImageAngleErrors,
+    ModelParallax,
+    Regression,
+    Selection,
+    StripParallax,
+)
 from posstats.geometry.stereo.parallax import strip_statistics
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.statistics.drift import DriftFit
 
 _Floats = NDArray[np.float64]
-Row = dict[str, Any]
 
 _OLS_KEYS = (
     "n_time_clusters",
@@ -49,70 +57,24 @@ _GLS_KEYS = (
 )
 
 
-def block_row(block: Block) -> Row:
-    """What a block is, and what it was read from."""
-    n_checks = 0 if block.ground_points is None else int(block.ground_points.is_check.sum())
-    return {
-        "name": block.name,
-        "n_images": len(block.orientations),
-        "n_strips": len(block.orientations.strips),
-        "n_tie_points": int((~block.check_points).sum()),
-        "n_check_points": n_checks,
-        "simulated": block.simulated,
-        "crs": block.frame.crs,
-        "angles": block.orientations.system,
-        "inputs": [{"file": name, "sha256": digest} for name, digest in block.inputs],
-    }
-
-
-def image_rows(block: Block) -> list[Row]:
-    """Every image with its place in the plan."""
-    pos = block.orientations
-    position = block.frame.to_crs(pos.position_m)
-    return [
-        {
-            "image": pos.image[k],
-            "strip": pos.strip[k],
-            "time_s": pos.time_s[k],
-            "x_m": position[k, 0],
-            "y_m": position[k, 1],
-            "z_m": position[k, 2],
-            "footprint": corners,
-        }
-        for k, corners in enumerate(footprints(block))
-    ]
-
-
-def parallax_rows(analysis: Analysis) -> list[Row]:
+def parallax_rows(analysis: Analysis) -> Iterator[StripParallax]:
     """Parallax by strip, from POS and after relative orientation (Table 2)."""
     methods = {
         "pos": analysis.raw_px,
         "independent": analysis.independent.y_parallax_rms_px,
         "dependent": analysis.dependent.y_parallax_rms_px,
     }
-    return [
-        {
-            "strip": each.strip,
-            "method": method,
-            "n_models": each.n_models,
-            "max_mm": each.max_mm,
-            "min_mm": each.min_mm,
-            "mean_mm": each.mean_mm,
-            "max_px": each.max_px,
-            "min_px": each.min_px,
-            "mean_px": each.mean_px,
-        }
-        for method, rms_px in methods.items()
-        for each in strip_statistics(analysis.models, rms_px)
-    ]
+    for method, rms_px in methods.items():
+        for each in strip_statistics(analysis.models, rms_px):
+            yield record(StripParallax, vars(each) | {"method": method})
 
 
-def model_rows(analysis: Analysis) -> list[Row]:
+def model_rows(analysis: Analysis) -> Iterator[ModelParallax]:
     """RMS y-parallax of every stereo model."""
     models, pos = analysis.models, analysis.models.orientations
     independent, dependent = analysis.independent, analysis.dependent
-    return [
-        {
+    for k in range(len(models)):
+        values = {
             "left": pos.image[models.pairs.left[k]],
             "right": pos.image[models.pairs.right[k]],
             "strip": models.strip[k],
@@ -126,42 +88,38 @@ def model_rows(analysis: Analysis) -> list[Row]:
             "bundle_px": _of_model(analysis.triangulated_px.get("bundle"), k),
             "status": independent.status[k],
         }
-        for k in range(len(models))
-    ]
+        yield record(ModelParallax, values)
 
 
 def _of_model(rms_px: _Floats | None, k: int) -> float | None:
     return None if rms_px is None else float(rms_px[k])
 
 
-def error_source_rows(analysis: Analysis) -> list[Row]:
+def error_source_rows(analysis: Analysis) -> Iterator[ErrorSource]:
     """Parallax by strip with POS angles held (Figure 1)."""
     held = {name: each.y_parallax_rms_px for name, each in analysis.fixed.items()}
     held["none"] = analysis.dependent.y_parallax_rms_px
-    return [row for name, rms_px in held.items() for row in _means(analysis, "fixed", name, rms_px)]
+    for name, values in _means(analysis, held):
+        yield record(ErrorSource, {"fixed": name} | values)
 
 
-def corrected_parallax_rows(analysis: Analysis) -> list[Row]:
+def corrected_parallax_rows(analysis: Analysis) -> Iterator[CorrectedParallax]:
     """Parallax by strip after each correction (Figure 3)."""
-    return [
-        row
-        for name, rms_px in analysis.corrected_px.items()
-        for row in _means(analysis, "corrected", name, rms_px)
-    ]
+    for name, values in _means(analysis, analysis.corrected_px):
+        yield record(CorrectedParallax, {"corrected": name} | values)
 
 
-def _means(analysis: Analysis, key: str, name: str, rms_px: _Floats) -> Iterator[Row]:
-    for each in strip_statistics(analysis.models, rms_px):
-        yield {
-            "strip": each.strip,
-            key: name,
-            "n_models": each.n_models,
-            "mean_mm": each.mean_mm,
-            "mean_px": each.mean_px,
-        }
+def _means(
+    analysis: Analysis, rms_px: Mapping[str, _Floats]
+) -> Iterator[tuple[str, dict[str, object]]]:
+    """Means over the models of every strip, for every name."""
+    keys = ("strip", "n_models", "mean_mm", "mean_px")
+    for name, values in rms_px.items():
+        for each in strip_statistics(analysis.models, values):
+            yield name, {key: getattr(each, key) for key in keys}
 
 
-def angle_error_rows(frames: Sequence[FrameAnalysis]) -> list[Row]:
+def angle_error_rows(frames: Sequence[FrameAnalysis]) -> Iterator[ImageAngleErrors]:
     """Angle errors of every image, in every frame that was analysed."""
     errors = frames[0].errors
     columns = {
@@ -173,26 +131,25 @@ def angle_error_rows(frames: Sequence[FrameAnalysis]) -> list[Row]:
             (f"sigma_{angle}_rad", frame.errors.sigma_rad[:, axis]),
         )
     }
-    return [
-        {"image": errors.image[k], "strip": errors.strip[k], "time_s": errors.time_s[k]}
-        | {key: values[k] for key, values in columns.items()}
-        | {"used": errors.used[k]}
-        for k in range(len(errors))
-    ]
+    of_image = {"image": errors.image, "strip": errors.strip, "time_s": errors.time_s}
+    for k in range(len(errors)):
+        values: dict[str, object] = {key: column[k] for key, column in of_image.items()}
+        values |= {key: column[k] for key, column in columns.items()}
+        yield record(ImageAngleErrors, values | {"used": errors.used[k]})
 
 
 def _angle_names(frame: FrameAnalysis) -> tuple[str, ...]:
     return ANGLE_NAMES if frame.frame == "ground" else CAMERA_ANGLE_NAMES
 
 
-def angle_error_summary_rows(frame: FrameAnalysis) -> Iterator[Row]:
+def angle_error_summary_rows(frame: FrameAnalysis) -> Iterator[AngleErrorSummary]:
     """Size of the angle errors in one frame."""
     errors = frame.errors
     for axis, angle in enumerate(_angle_names(frame)):
         used = errors.error_rad[errors.used, axis]
         sigma = errors.sigma_rad[errors.used, axis]
         any_used = len(used) > 0
-        yield {
+        values = {
             "angle": angle,
             "frame": frame.frame,
             "n": len(used),
@@ -201,11 +158,12 @@ def angle_error_summary_rows(frame: FrameAnalysis) -> Iterator[Row]:
             "max_abs_rad": np.abs(used).max() if any_used else None,
             "median_sigma_rad": np.median(sigma) if any_used else None,
         }
+        yield record(AngleErrorSummary, values)
 
 
-def bundle_row(bundle: ImuFreeBundle) -> Row:
+def bundle_row(bundle: ImuFreeBundle) -> Bundle:
     """The bundle adjustment that the angle errors come from."""
-    return {
+    values = {
         "sigma0": bundle.overall.sigma0,
         "dof": bundle.overall.dof,
         "p_value": bundle.overall.p,
@@ -215,34 +173,29 @@ def bundle_row(bundle: ImuFreeBundle) -> Row:
         "n_rejected_rays": bundle.n_rejected,
         "n_control_points": len(bundle.problem.control.point),
     }
+    return record(Bundle, values)
 
 
-def regression_row(each: AngleRegression) -> Row:
+def regression_row(each: AngleRegression) -> Regression:
     """Fits of one angle over one scope (Table 3)."""
-    row: Row = {
+    origin_s = None if each.ols is None else each.ols.time_reference_s
+    constant = each.gls_constant
+    values = {
         "angle": each.angle,
         "frame": each.frame,
         "scope": each.scope,
         "n": each.n,
         "n_strips": each.n_strips,
+        "constant_rad": None if constant is None else constant.value,
+        "constant_se_rad": None if constant is None else constant.se,
+        "constant_p_value": None if constant is None else constant.p_value,
+        "covariance_known": each.covariance_known,
+        "reason": each.reason,
     }
-    origin_s = None if each.ols is None else each.ols.time_reference_s
-    constant = each.gls_constant
-    return (
-        row
-        | _ols(each.ols)
-        | _gls(each.gls, origin_s)
-        | {
-            "constant_rad": None if constant is None else constant.value,
-            "constant_se_rad": None if constant is None else constant.se,
-            "constant_p_value": None if constant is None else constant.p_value,
-            "covariance_known": each.covariance_known,
-            "reason": each.reason,
-        }
-    )
+    return record(Regression, values | _ols(each.ols) | _gls(each.gls, origin_s))
 
 
-def _ols(fit: DriftFit | None) -> Row:
+def _ols(fit: DriftFit | None) -> dict[str, object]:
     """The paper's regression; intercepts are given at `time_origin_s`."""
     if fit is None:
         return dict.fromkeys(_OLS_KEYS)
@@ -267,7 +220,7 @@ def _ols(fit: DriftFit | None) -> Row:
     return dict(zip(_OLS_KEYS, values, strict=True))
 
 
-def _gls(fit: DriftFit | None, origin_s: float | None) -> Row:
+def _gls(fit: DriftFit | None, origin_s: float | None) -> dict[str, object]:
     if fit is None or origin_s is None:
         return dict.fromkeys(_GLS_KEYS)
     intercept, intercept_se = fit.intercept_at(origin_s)
@@ -286,58 +239,22 @@ def _gls(fit: DriftFit | None, origin_s: float | None) -> Row:
     return dict(zip(_GLS_KEYS, values, strict=True))
 
 
-def frame_rows(analysis: Analysis) -> list[Row]:
+def frame_rows(analysis: Analysis) -> Iterator[FrameComparison]:
     """How the frames compare out of sample; empty unless the frame was chosen automatically."""
-    return [
-        {
-            "frame": each.frame,
-            "out_of_sample_px": each.out_of_sample.corrected_px,
-            "raw_px": each.out_of_sample.raw_px,
-            "n_models": each.out_of_sample.n_models,
-        }
-        for each in analysis.frames
-        if each.out_of_sample is not None
-    ]
+    for each in analysis.frames:
+        tried = each.out_of_sample
+        if tried is not None:
+            values = {
+                "frame": each.frame,
+                "out_of_sample_px": tried.corrected_px,
+                "raw_px": tried.raw_px,
+                "n_models": tried.n_models,
+            }
+            yield record(FrameComparison, values)
 
 
-def selection_rows(chosen: FrameAnalysis) -> list[Row]:
+def selection_rows(chosen: FrameAnalysis) -> Iterator[Selection]:
     """The decisions of the chosen frame."""
-    return [
-        {
-            "angle": each.angle,
-            "frame": each.frame,
-            "scope": each.scope,
-            "correct": each.correct,
-            "form": each.form,
-            "rule": each.rule,
-            "fit": each.fit,
-            "reason": each.reason,
-        }
-        for each in chosen.decisions
-    ]
-
-
-def accuracy_row(residuals: CheckPointResiduals, *, translation_removed: bool) -> Row:
-    """Statistics of the check points from one set of orientations."""
-    return vars(check_point_accuracy(residuals, translation_removed)).copy()
-
-
-def residual_rows(residuals: CheckPointResiduals) -> Iterator[Row]:
-    """Every check point from one set of orientations."""
-    for k in range(len(residuals)):
-        yield {
-            "orientation": residuals.orientation,
-            "point": residuals.point[k],
-            "n_rays": residuals.n_rays[k],
-            "status": residuals.status[k],
-            "survey_sigma_xy_m": residuals.survey_sigma_m[k, 0],
-            "survey_sigma_z_m": residuals.survey_sigma_m[k, 1],
-        } | {
-            key: value
-            for axis, name in enumerate("xyz")
-            for key, value in (
-                (f"{name}_m", residuals.given_m[k, axis]),
-                (f"d{name}_m", residuals.difference_m[k, axis]),
-                (f"sigma_{name}_m", residuals.sigma_m[k, axis]),
-            )
-        }
+    keys = ("angle", "frame", "scope", "correct", "form", "rule", "fit", "reason")
+    for each in chosen.decisions:
+        yield record(Selection, {key: getattr(each, key) for key in keys})

@@ -139,7 +139,7 @@ def decide(
         Correct by one function of time for the block, or by one for every strip.
     out_of_sample
         Parallax on images that took no part in the fits, if the given decisions were applied
-        (`posstats.validation.out_of_sample_parallax` of the models). Needed by rules with
+        (`posstats.analysis.out_of_sample` of the models). Needed by rules with
         `min_parallax_gain`.
 
     Raises

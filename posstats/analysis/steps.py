@@ -17,12 +17,13 @@ from posstats.analysis.angle_errors import (
     coplanarity_errors,
     in_camera_frame,
 )
-from posstats.analysis.correction import corrected, predicted_errors
+from posstats.analysis.correction import predicted_errors
 from posstats.analysis.out_of_sample import out_of_sample_parallax
 from posstats.analysis.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.analysis.rules import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
+from posstats.block.turned import corrected
 from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
-from posstats.plain_values import to_json
 
 from ..archive.writing import Attachment, render_archive
 from ..pages.pdf import PdfUnavailableError

@@ -11,8 +11,9 @@ from typing import Any
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
+from posstats.contract.files import as_values, to_json
+from posstats.contract.results import SCHEMA as RESULTS_SCHEMA
 from posstats.errors import PosstatsError
-from posstats.plain_values import RESULTS_SCHEMA, to_json
 
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document
@@ -136,7 +137,7 @@ def _results(
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
-    values = results(analysis, created=now())
+    values = as_values(results(analysis, created=now()))
     text = to_json(values).encode("utf-8")
     return values, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
 

@@ -9,9 +9,9 @@ from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
 from posstats.adjustment.calibration import calibrated
 from posstats.adjustment.control import NAMED_CHOICES, read_ids
 from posstats.adjustment.results import adjustment_results, write_adjustment
+from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
-from posstats.plain_values import to_json
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict

@@ -9,7 +9,7 @@ from typing import Literal
 
 import click
 
-from posstats import __version__
+from posstats.version import __version__
 
 from . import acceptance_group as acceptance_cli
 from .command_line import FOLDER, clear_errors, default_out

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from posstats import __version__
 from posstats.papers.drift.comparison import TABLE3_AREA
 from posstats.papers.drift.findings import CRITERIA
 from posstats.papers.drift.reproduction import Reproduction, reproduction
 from posstats.papers.drift.seeds import repeated, share
+from posstats.version import __version__
 
 from ..block.report import write_pages
 from ..output.staged_folder import staged_folder

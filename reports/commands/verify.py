@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from posstats import __version__
+from posstats.contract.versions import versions
 from posstats.errors import PosstatsError
-from posstats.plain_values import versions
+from posstats.version import __version__
 
 from ..acceptance.data import reassess
 from ..acceptance.page import render_document

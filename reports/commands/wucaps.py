@@ -6,14 +6,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from posstats import __version__
+from posstats.contract.versions import versions
 from posstats.papers.wucaps.adjustments import CONTROLS
 from posstats.papers.wucaps.experiment import Row, SituationRun, run_situation
 from posstats.papers.wucaps.findings import CRITERIA
 from posstats.papers.wucaps.reproduction import Reproduction, reproduction
 from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import SITUATIONS, Situation
-from posstats.plain_values import versions
+from posstats.version import __version__
 
 from ..block.report import write_pages
 from ..output.progress import progress_bar

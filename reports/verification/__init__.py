@@ -1,1 +1,1 @@
-"""Is an acceptance document what it says?"""
+"""Whether an acceptance document is what it says."""

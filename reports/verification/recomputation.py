@@ -7,9 +7,9 @@ from typing import Any
 from posstats.adjustment.calibration import calibrated
 from posstats.analysis.results import results
 from posstats.analysis.steps import Settings, analyse
+from posstats.contract.files import to_json
 from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
-from posstats.plain_values import to_json
 
 
 def recompute(folder: Path, pattern: dict[str, Any]) -> dict[str, Any]:

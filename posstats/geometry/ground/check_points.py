@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.contract.check_points import CheckPointStatistics
 from posstats.geometry.ground.intersection import IntersectedPoints, intersect
 
 _Floats = NDArray[np.float64]
@@ -60,38 +61,6 @@ class CheckPointResiduals:
     def is_ok(self) -> NDArray[np.bool_]:
         """(g,) true where there is a difference."""
         return np.asarray(self.status == "ok", dtype=bool)
-
-
-@dataclass(frozen=True)
-class CheckPointAccuracy:
-    """Statistics of the differences at n check points, metres; None where undefined.
-
-    Horizontal is hypot(dX, dY) of a point, vertical |dZ|. The root mean squares have the
-    divisor n, or n - 1 where the mean difference was removed: that estimate spends one point
-    on the translation and uses the check points themselves, so it is no proof of accuracy.
-
-    Attributes
-    ----------
-    orientation
-        Name of the orientations.
-    translation_removed
-        Whether the mean difference was removed before the other figures were formed.
-    n
-        Check points that were intersected.
-    shift_m
-        Mean difference dX, dY, dZ (in either case), crs axes.
-    """
-
-    orientation: str
-    translation_removed: bool
-    n: int
-    max_horizontal_m: float | None
-    max_vertical_m: float | None
-    min_horizontal_m: float | None
-    min_vertical_m: float | None
-    rmse_horizontal_m: float | None
-    rmse_vertical_m: float | None
-    shift_m: tuple[float, float, float] | None
 
 
 def check_point_residuals(
@@ -164,8 +133,13 @@ def differences(
 
 def check_point_accuracy(
     residuals: CheckPointResiduals, translation_removed: bool
-) -> CheckPointAccuracy:
-    """Maximum, minimum and RMSE of the differences at check points, horizontal and vertical."""
+) -> CheckPointStatistics:
+    """Maximum, minimum and RMSE of the differences at check points, horizontal and vertical.
+
+    Horizontal is hypot(dX, dY) of a point, vertical |dZ|. The root mean squares have the
+    divisor n, or n - 1 where the mean difference was removed: that estimate spends one point
+    on the translation and uses the check points themselves, so it is no proof of accuracy.
+    """
     difference = residuals.difference_m[residuals.is_ok]
     n = len(difference)
     shift = difference.mean(axis=0) if n else None
@@ -176,7 +150,7 @@ def check_point_accuracy(
     horizontal = np.hypot(difference[:, 0], difference[:, 1])
     max_h, min_h, rmse_h = _extremes_and_rmse(horizontal, divisor)
     max_v, min_v, rmse_v = _extremes_and_rmse(np.abs(difference[:, 2]), divisor)
-    return CheckPointAccuracy(
+    return CheckPointStatistics(
         orientation=residuals.orientation,
         translation_removed=translation_removed,
         n=n,

@@ -18,7 +18,7 @@ class Reproduction:
     Attributes
     ----------
     seed
-        Of the run; see `posstats.experiment.areas.area_seed`.
+        Of the run; see `posstats.papers.drift.areas.area_seed`.
     results, findings
         By area.
     compared

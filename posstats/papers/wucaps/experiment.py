@@ -127,7 +127,7 @@ def run_situation(
     situation
         ``flat`` or ``mountain``.
     seed
-        Of the whole experiment; see `posstats.wucaps.situations.flight_seed`.
+        Of the whole experiment; see `posstats.papers.wucaps.situations.flight_seed`.
     progress
         Called with the share done, 0 to 1.
     """

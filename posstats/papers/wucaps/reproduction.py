@@ -15,7 +15,7 @@ class Reproduction:
     Attributes
     ----------
     seed
-        Of the run; see `posstats.wucaps.situations.flight_seed`.
+        Of the run; see `posstats.papers.wucaps.situations.flight_seed`.
     runs, findings
         By situation.
     """

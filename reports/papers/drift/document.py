@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from posstats import __version__
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
+from posstats.version import __version__
 
 from ...document import format as fmt
 from ...document.key_figure import KeyFigure

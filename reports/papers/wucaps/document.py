@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from posstats import __version__
 from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import repeated
+from posstats.version import __version__
 
 from ...document import format as fmt
 from ...document.key_figure import KeyFigure
