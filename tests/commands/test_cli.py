@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import ROOT
 from small_scenario import small_block
 
 from posstats import __version__, read_block
@@ -110,7 +111,7 @@ def test_an_existing_folder_keeps_what_is_not_ours(block_folder, tmp_path):
 
 
 def test_simulate_writes_a_block_that_check_accepts(tmp_path):
-    area = Path(__file__).resolve().parents[1] / "posstats" / "scenarios" / "area1-small.toml"
+    area = ROOT / "posstats" / "synthetic" / "scenarios" / "area1-small.toml"
     run = posstats("simulate", "--scenario", area, "--out", tmp_path / "a", "--seed", "3")
     assert run.returncode == 0, run.stderr
     assert "simulated = true" in (tmp_path / "a" / "block.toml").read_text()

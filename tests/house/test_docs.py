@@ -3,11 +3,10 @@
 import re
 import runpy
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import shared_path
+from helpers import ROOT, shared_path
 from small_blocks import Layout, observed_block, true_block
 from strip_scene import block, scene
 
@@ -19,7 +18,7 @@ from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = ROOT / "docs"
 
 
 def _example(folder):

@@ -7,8 +7,8 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from helpers import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = sorted((ROOT / "posstats").rglob("*.py"))
 KERNELS = (
     "block_tridiagonal",

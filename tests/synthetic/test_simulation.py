@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from test_scenario import changed
+from minimal_scenario import changed
 
 from posstats.block.image_pairs import cross_strip_pairs, stereo_models
 from posstats.errors import GeometryError

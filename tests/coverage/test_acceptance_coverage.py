@@ -5,12 +5,12 @@ true coverage of 93 to 97 %.
 """
 
 import runpy
-from pathlib import Path
 
 import pytest
+from helpers import ROOT
 from scipy import stats
 
-BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "acceptance_coverage.py"
+BENCHMARK = ROOT / "benchmarks" / "acceptance_coverage.py"
 N_TRIALS = 1000
 
 

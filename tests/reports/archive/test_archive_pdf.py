@@ -10,6 +10,7 @@ import pikepdf
 import pytest
 from archive_conformance import problems
 from archive_documents import CREATED, contents, document, results_of, write_inputs
+from helpers import ROOT
 from page_reading import pdf_pages
 
 from posstats.reports.archive import writing as archive_pdf
@@ -55,13 +56,17 @@ def test_another_process_writes_the_same_bytes(archive, inputs):
         "import sys; from pathlib import Path; from archive_documents import document, results_of;"
         f"sys.stdout.buffer.write(document(results_of(Path({str(inputs)!r}))))"
     )
-    settings = {"PYTHONPATH": str(Path(__file__).parent), "PYTHONHASHSEED": "7", "TZ": "Asia/Tokyo"}
+    settings = {
+        "PYTHONPATH": str(ROOT / "tests" / "support"),
+        "PYTHONHASHSEED": "7",
+        "TZ": "Asia/Tokyo",
+    }
     run = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
         check=True,
         env=os.environ | settings,
-        cwd=Path(__file__).resolve().parents[1],
+        cwd=ROOT,
     )
     assert run.stdout == archive
 

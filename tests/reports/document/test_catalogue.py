@@ -4,9 +4,9 @@ import ast
 import re
 import string
 from itertools import chain
-from pathlib import Path
 
 import pytest
+from helpers import ROOT
 
 from posstats.acceptance.evidence import ORIENTATIONS
 from posstats.acceptance.quantity_names import QUANTITIES
@@ -15,7 +15,6 @@ from posstats.reports.acceptance import words as acceptance_words
 from posstats.reports.document.catalogue import MissingMessageError, catalogue
 from posstats.statistics import samples
 
-ROOT = Path(__file__).resolve().parents[1]
 ENGLISH, CHINESE = catalogue("en"), catalogue("zh")
 MAY_BE_EMPTY = {"page.after", "sentence.between"}
 ACCEPTANCE = "".join(

@@ -18,6 +18,7 @@ from archive_documents import (
     write_inputs,
 )
 from click.testing import CliRunner
+from helpers import ROOT
 from small_scenario import small_block
 
 from posstats.analysis.results import results
@@ -92,7 +93,7 @@ def test_what_cannot_be_asked_is_an_error(folder, arguments, word):
 
 
 def test_every_question_is_described():
-    page = (Path(__file__).parents[1] / "docs" / "verify.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "verify.md").read_text(encoding="utf-8")
     questions = [
         *(words.READABLE, words.SIGNED, words.APPENDED, words.FILES, words.ASSESSMENT),
         *(words.PAGES, words.INPUTS, words.RECOMPUTED, words.intact_question("the signature")),
@@ -126,7 +127,7 @@ def analysed(tmp_path_factory) -> tuple[Path, dict]:
     folder = tmp_path_factory.mktemp("small") / "block"
     write_block(small_block(), folder)
     (folder / "own.toml").write_bytes(
-        (Path(__file__).parents[1] / "posstats" / "rules" / "strict.toml").read_bytes()
+        (ROOT / "posstats" / "analysis" / "rule_sets" / "strict.toml").read_bytes()
     )
     settings = Settings(rules="strict", frame="auto")
     analysis = analyse(read_block(folder), settings)

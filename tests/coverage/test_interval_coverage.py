@@ -1,15 +1,15 @@
 """Do 95 % intervals of the drift cover 95 %? A fast part of benchmarks/interval_coverage.py."""
 
 import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import ROOT
 from scipy import stats
 
 from posstats.statistics.drift import fit_drift
 
-BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "interval_coverage.py"
+BENCHMARK = ROOT / "benchmarks" / "interval_coverage.py"
 N_TRIALS = 400
 
 

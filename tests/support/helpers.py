@@ -4,7 +4,10 @@ from pathlib import Path
 
 import pytest
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
+ROOT = Path(__file__).resolve().parents[2]
+"""The repository."""
+
+SHARED = ROOT.parent / "shared"
 
 
 def shared_path(*parts: str) -> Path:

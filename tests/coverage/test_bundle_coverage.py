@@ -5,15 +5,15 @@ freedom, and blocks are independent: the sum over the blocks has exact limits.
 """
 
 import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import ROOT
 from scipy import stats
 
 from posstats.numerics.kernels.rotation import wrapped
 
-BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "bundle_coverage.py"
+BENCHMARK = ROOT / "benchmarks" / "bundle_coverage.py"
 N_BLOCKS = 16
 SURE = 0.001
 """Probability of failing on each side, were the covariances right."""

@@ -3,16 +3,16 @@
 import re
 import tomllib
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import ROOT
 
 from posstats.block.image_pairs import stereo_models
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import Scenario, load_scenario
 
-TEXT = (Path(__file__).resolve().parents[1] / "docs" / "simulation.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
 
 
 def test_the_example_can_be_flown():

@@ -7,10 +7,10 @@ import os
 import re
 import string
 import time
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from helpers import ROOT
 
 from posstats.acceptance import profile_reading as reading
 from posstats.acceptance.product import Product
@@ -26,7 +26,7 @@ from posstats.acceptance.quantity_names import COUNTED_BEYOND, QUANTITIES
 from posstats.errors import PosstatsError
 from posstats.reports.commands.cli import cli
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = ROOT / "docs"
 OWN = "[[requirement]]\nid = 'a'\nquantity = 'rmse_h'\nlimit = 1\n"
 
 

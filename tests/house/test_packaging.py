@@ -8,8 +8,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from helpers import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ("posstats", "reports", "templates", "pyproject.toml", "README.md", "LICENSE")
 
 

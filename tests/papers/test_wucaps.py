@@ -5,10 +5,10 @@ Oracle: the scenario, orientations moved by known amounts, and findings with sin
 
 import re
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import ROOT
 from small_scenario import small_block
 
 from posstats.adjustment.settings import DriftPriors
@@ -255,7 +255,7 @@ def test_over_many_seeds_the_rmse_is_what_the_covariance_predicts(situation, con
 
 
 def test_the_ratios_that_the_documentation_gives_are_those_of_the_seeds(situation):
-    page = (Path(__file__).resolve().parents[1] / "docs" / "wucaps.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "wucaps.md").read_text(encoding="utf-8")
     (table,) = re.findall(r"\| situation \| control \|.*?\n\n", page, re.DOTALL)
     given = re.findall(r"\| (\d\.\d\d) / (\d\.\d\d) \| (\d\.\d\d) / (\d\.\d\d) \|", table)
     mine = given[:4] if situation == "flat" else given[4:]
