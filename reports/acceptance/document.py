@@ -1,16 +1,13 @@
-"""What the templates of the acceptance document see: frozen, and nothing else."""
+"""The acceptance document: its front and its topics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from ..block.view import Results
 from ..document import format as fmt
+from ..document.front import Fact, Signature, Verdict
 from ..document.key_figure import KeyFigure
-from ..document.numbering import Section, numbered
-from ..document.table import Table
-from ..figures.style import shortened
-from ..typefaces.cjk import is_cjk
+from ..document.numbering import ReportDocument, numbered
 from . import tables, units
 from . import words as wording
 from .figures import draw
@@ -20,84 +17,11 @@ from .words import Words
 PARTIES = ("inspector", "contractor", "client")
 STATED = ("title", "number", "client", "contractor", "inspector", "flight", "flight_date", "sensor",
           "place", "remarks")  # fmt: skip
-LONG_SUBJECT, LONG_VALUE = 64, 60  # letters
 COUNTED = ("n_images", "n_strips", "n_models", "n_check_points")
 KEYS = (("rmse_h", "product_rmse_h"), ("rmse_v", "product_rmse_v"), ("n_check_points",))
 
 
-@dataclass(frozen=True)
-class Fact:
-    """A name and a value."""
-
-    label: str
-    value: str
-
-    @property
-    def is_long(self) -> bool:
-        """Whether the value needs the whole width of the page."""
-        return _width(self.value) > LONG_VALUE
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """The verdict as it stands on the first page.
-
-    `kind` is ``accepted``, ``rejected`` or ``not-assessable``; `sign` and `word` say the same.
-    """
-
-    kind: str
-    sign: str
-    word: str
-    summary: str
-
-
-@dataclass(frozen=True)
-class Signature:
-    """A party that signs: its role and its name, if known."""
-
-    role: str
-    name: str
-
-
-@dataclass(frozen=True)
-class AcceptanceDocument:
-    """All that templates see.
-
-    `subject` is what was inspected, `identity` which document this is, `facts` who and what is
-    concerned, `basis` what was judged by what, `statement` the standard's own words, `short` the
-    requirements for the first page.
-    """
-
-    title: str
-    subject: str
-    delivered: str
-    mark: str
-    created: str
-    version: str
-    document_id: str
-    identity: tuple[Fact, ...]
-    verdict: Verdict
-    basis: tuple[Fact, ...]
-    statement: str
-    facts: tuple[Fact, ...]
-    key_figures: tuple[KeyFigure, ...]
-    short: Table
-    sections: tuple[Section, ...]
-    signatures: tuple[Signature, ...]
-
-    @property
-    def is_long(self) -> bool:
-        """Whether the subject needs smaller letters."""
-        return _width(self.subject) > LONG_SUBJECT
-
-    @property
-    def running(self) -> str:
-        """The subject as it stands above every page, its middle left out if it is long."""
-        wide = _width(self.subject) / max(len(self.subject), 1)
-        return shortened(self.subject, int(LONG_SUBJECT / max(wide, 1.0)))
-
-
-def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") -> AcceptanceDocument:
+def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") -> ReportDocument:
     """Make the document.
 
     Parameters
@@ -113,10 +37,11 @@ def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") ->
     drawings = draw(words, acceptance, results)
     _, sections = numbered((), parts(words, acceptance, results, drawings, unshown))
     contract, block = acceptance["contract"], acceptance["block"]
-    return AcceptanceDocument(
+    return ReportDocument(
+        language=acceptance["language"],
         title=words.text("document.title"),
         subject=str(contract.get("title") or block["name"]),
-        delivered=_delivered(words, block),
+        subtitle=_delivered(words, block),
         mark=words.text("mark.simulated") if block["simulated"] else "",
         created=_date(acceptance),
         version=str(acceptance["posstats_version"]),
@@ -134,11 +59,6 @@ def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") ->
             for party in PARTIES
         ),
     )
-
-
-def _width(text: str) -> int:
-    """Width of a text in Latin letters; Chinese ones take two."""
-    return sum(2 if is_cjk(letter) else 1 for letter in text)
 
 
 def _date(acceptance: Mapping[str, Any]) -> str:

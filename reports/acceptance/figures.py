@@ -13,6 +13,7 @@ from ..block import plan_figures as figure_plan
 from ..block.bar_figures import Bars, bar_figure
 from ..block.view import Results, Row, angles, rows, setting, strips_with_models
 from ..document import format as fmt
+from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import (
     FloatArray,
@@ -39,7 +40,7 @@ _LOOKS = {"pass": (style.BLUE, "o"), "fail": (style.VERMILLION, "X"),
           "not assessed": (style.GREY, "D")}  # fmt: skip
 
 
-def draw(words: Words, acceptance: Mapping[str, Any], results: Results) -> dict[str, style.Drawing]:
+def draw(words: Words, acceptance: Mapping[str, Any], results: Results) -> dict[str, Drawing]:
     """Every figure that the data allow, by name."""
     with style.style(_families(acceptance, results)):
         drawings = [
@@ -52,7 +53,7 @@ def draw(words: Words, acceptance: Mapping[str, Any], results: Results) -> dict[
     return {drawing.name: drawing for drawing in drawings if drawing}
 
 
-def shares_of_limits(words: Words, acceptance: Mapping[str, Any]) -> style.Drawing | None:
+def shares_of_limits(words: Words, acceptance: Mapping[str, Any]) -> Drawing | None:
     """Found values with their intervals as shares of their limits; those with an upper limit."""
     named = zip(
         words.requirements(acceptance["requirements"]), acceptance["requirements"], strict=True
@@ -65,7 +66,7 @@ def shares_of_limits(words: Words, acceptance: Mapping[str, Any]) -> style.Drawi
     for k, (_, row) in enumerate(shown):
         _share(axis, k, row)
     axis.axvline(1.0, color=style.BLACK, lw=1.2)
-    axis.set_yticks(range(len(shown)), [style.shortened(name, TITLE_LETTERS) for name, _ in shown])
+    axis.set_yticks(range(len(shown)), [fmt.shortened(name, TITLE_LETTERS) for name, _ in shown])
     axis.set(xlim=(0.0, MAX_SHARE), ylim=(len(shown) - 0.4, -0.6))
     axis.set_xlabel(words.text("axis.share"))
     axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.0f}\u00a0%"))
@@ -74,7 +75,7 @@ def shares_of_limits(words: Words, acceptance: Mapping[str, Any]) -> style.Drawi
     return _finished(words, figure, "shares")
 
 
-def histograms(words: Words, acceptance: Mapping[str, Any]) -> style.Drawing | None:
+def histograms(words: Words, acceptance: Mapping[str, Any]) -> Drawing | None:
     """Differences by component with the normal curve that would just meet the limit."""
     differences = _differences(acceptance["check_points"])
     if len(differences) < FEWEST:
@@ -90,9 +91,7 @@ def histograms(words: Words, acceptance: Mapping[str, Any]) -> style.Drawing | N
     return _finished(words, figure, "histograms")
 
 
-def point_plan(
-    words: Words, acceptance: Mapping[str, Any], results: Results
-) -> style.Drawing | None:
+def point_plan(words: Words, acceptance: Mapping[str, Any], results: Results) -> Drawing | None:
     """Differences at the check points in plan, mean kept; blunders ringed."""
     points = [p for p in acceptance["check_points"] if p["status"] == "ok"]
     if not points:
@@ -134,7 +133,7 @@ def _arrows(axis: Axes, view: PlanView, points: Sequence[Row]) -> None:
     scale_arrow(axis, view, scale, style.BLACK, row=1)
 
 
-def parallax(words: Words, results: Results, orientation: str) -> style.Drawing | None:
+def parallax(words: Words, results: Results, orientation: str) -> Drawing | None:
     """Mean vertical parallax per strip: POS, assessed orientation, relative orientation."""
     kept = strips_with_models(results)
     groups = [
@@ -148,7 +147,7 @@ def parallax(words: Words, results: Results, orientation: str) -> style.Drawing 
     return _finished(words, figure, "parallax_by_strip")
 
 
-def regression(words: Words, results: Results) -> style.Drawing | None:
+def regression(words: Words, results: Results) -> Drawing | None:
     """Errors of the three angles over time with the fitted lines, one panel each."""
     frame = setting(results, "frame", "ground")
     data = {a: figure_regression.used_errors(results, a) for a in angles(frame)}
@@ -179,7 +178,7 @@ def _angle_panel(
     panel.label(words.known("angle", angle))
 
 
-def _finished(words: Words, figure: Any, name: str) -> style.Drawing:
+def _finished(words: Words, figure: Any, name: str) -> Drawing:
     return style.finish(
         figure, name, words.text(f"figure_title.{name}"), words.text(f"figure.{name}")
     )

@@ -13,6 +13,7 @@ from ..pages.garbage import garbage_kept
 from ..typefaces import cjk, fonts
 from . import templates as acceptance_templates
 from .document import build
+from .words import DOMAINS
 
 SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn
@@ -62,7 +63,7 @@ def _rendered(
 ) -> str:
     acceptance, results = _mapped(acceptance, cjk.legible), _mapped(results, cjk.legible)
     lost = unshown(acceptance, results)
-    words = catalogue(acceptance["language"])
+    words = catalogue(acceptance["language"], *DOMAINS)
     environment = acceptance_templates.environment(templates, words)
     document = build(acceptance, _drawable(results, lost), lost)
     marks = acceptance_templates.page_number_css(words, document.document_id, document.mark)

@@ -6,7 +6,7 @@ from typing import Any
 from ..block.view import Results, rows
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
-from ..figures.style import Drawing
+from ..document.drawing import Drawing
 from . import evidence, tables
 from .words import Words, is_borderline
 

@@ -87,25 +87,13 @@ def environment(
         _refuse_unescaped(made, name, text)
     images = {name: image_uri(name, data) for name, data in templates.items()
               if not _is_text(name)}  # fmt: skip
-    pages.dress(made, page_words(catalogue))
+    pages.dress(made, catalogue)
     made.globals |= {
         "images": images,
         "logo": next((images[name] for name in LOGOS if name in images), ""),
-        "say": catalogue.text,
         "style": Markup(theirs.get("style.css", "").replace("</", "<\\/")),  # noqa: S704 - checked
     }
     return made
-
-
-def page_words(catalogue: Catalogue) -> pages.PageWords:
-    """Words of the page itself in the language of a catalogue."""
-    return pages.PageWords(
-        language={"zh": "zh-CN"}.get(catalogue.language, catalogue.language),
-        contents=catalogue.text("page.contents"),
-        table=catalogue.text("page.table"),
-        figure=catalogue.text("page.figure"),
-        stop=catalogue.text("page.stop"),
-    )
 
 
 def page_number_css(catalogue: Catalogue, *marks: str) -> Markup:

@@ -6,39 +6,24 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..document import format as fmt
-from ..document.catalogue import Catalogue, catalogue
+from ..document import words as document
+from ..document.catalogue import catalogue
 from . import units
 from .units import Lengths, Row
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip
+DOMAINS = ("document", "acceptance")
 NAMED = 3  # requirements named in the verdict
 PRODUCT = ("class_h_m", "class_v_m", "gsd_m", "map_scale", "terrain", "lot_size", "sample_size",
            "survey_sigma_h_m", "survey_sigma_v_m")  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Words:
-    """The catalogue of a document with its unit of length."""
+class Words(document.Words):
+    """The catalogue of an acceptance document with its unit of length."""
 
-    catalogue: Catalogue
     unit: Lengths
-
-    def text(self, message: str, /, **values: str) -> str:
-        """A message of the catalogue."""
-        return self.catalogue.text(message, **values)
-
-    def of(self, family: str, key: str) -> str:
-        """The message of a family for a key of the data."""
-        return self.catalogue.of(family, key)
-
-    def known(self, family: str, key: str) -> str:
-        """The message of a family for a key, or the key where the family lacks it."""
-        return self.of(family, key) if self.catalogue.holds(family, key) else key
-
-    def counted(self, message: str, n: int, /, **values: str) -> str:
-        """A plural message with its count as ``n``."""
-        return self.catalogue.plural(message, n, n=fmt.count(n), **values)
 
     def marked(self, family: str, key: str) -> str:
         """A verdict with its sign, so that it is never told by colour alone."""
@@ -66,15 +51,10 @@ class Words:
         more = self.text("list.more", n=fmt.count(len(small) - most))
         return self.catalogue.joined([*small[:most], more])
 
-    def interval(self, low: str, high: str) -> str:
-        """Two bounds as one text."""
-        missing = fmt.MISSING in (low, high)
-        return fmt.MISSING if missing else f"{low}{self.text('interval.between')}{high}"
-
 
 def words_of(acceptance: Mapping[str, Any]) -> Words:
     """The words that fit an acceptance."""
-    return Words(catalogue(acceptance["language"]), units.lengths(acceptance))
+    return Words(catalogue(acceptance["language"], *DOMAINS), units.lengths(acceptance))
 
 
 def reason(words: Words, row: Row) -> str:

@@ -4,8 +4,9 @@ from ..block import statistics_tables
 from ..block.view import Results
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
-from ..document.numbering import SIMULATED, ReportDocument, numbered
-from ..figures.style import Drawing
+from ..document.drawing import Drawing
+from ..document.front import Verdict
+from ..document.numbering import ReportDocument, numbered
 from . import (
     figures as adjustment_figures,
 )
@@ -30,14 +31,14 @@ def build(results: Results) -> ReportDocument:
     opening, sections = numbered(known(drawings.get("plan")), _parts(results, drawings))
     block = results["block"]
     return ReportDocument(
+        language="en",
         title="Bundle block adjustment with POS",
         subject=str(block["name"]),
         subtitle=_subtitle(results),
-        mark=SIMULATED if block["simulated"] else "",
+        mark="Simulated data" if block["simulated"] else "",
         created=str(results.get("created") or "").partition("T")[0],
         version=str(results["posstats_version"]),
-        verdict=adjustment_verdict.paragraph(results),
-        coarse=False,
+        verdict=Verdict(adjustment_verdict.paragraph(results)),
         key_figures=adjustment_verdict.key_figures(results),
         opening=opening,
         sections=sections,

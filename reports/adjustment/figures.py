@@ -9,6 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from ..block.plan_figures import difference_plan
 from ..block.view import Results, Row, rows, strips
 from ..document import format as fmt
+from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
 
@@ -17,7 +18,7 @@ LEAST_RAYS = 5
 _ARROW_SHARE = 0.8  # of a cell, for the largest mean residual
 
 
-def draw(results: Results) -> dict[str, style.Drawing]:
+def draw(results: Results) -> dict[str, Drawing]:
     """Every figure that the results allow, by name."""
     words = {"pos": "POS as delivered", "bundle": "adjusted"}
     with style.style():
@@ -29,7 +30,7 @@ def draw(results: Results) -> dict[str, style.Drawing]:
     return {drawing.name: drawing for drawing in drawings if drawing}
 
 
-def plan(results: Results) -> style.Drawing | None:
+def plan(results: Results) -> Drawing | None:
     """Images, strips, control and check points."""
     images = rows(results, "images")
     if not images:
@@ -72,7 +73,7 @@ def _points(axis: Axes, view: PlanView, results: Results) -> None:
                   label="check point")  # fmt: skip
 
 
-def image_residuals(results: Results) -> list[style.Drawing]:
+def image_residuals(results: Results) -> list[Drawing]:
     """Mean residual vectors over the image format, one figure per camera."""
     cells = [row for row in rows(results, "image_residuals") if row["n"] >= LEAST_RAYS]
     cameras = list(dict.fromkeys(row["camera"] for row in cells))
@@ -82,7 +83,7 @@ def image_residuals(results: Results) -> list[style.Drawing]:
     ]
 
 
-def _residuals(camera: str, cells: Sequence[Row], number: int) -> style.Drawing:
+def _residuals(camera: str, cells: Sequence[Row], number: int) -> Drawing:
     place = np.array([(row["x_px"], row["y_px"]) for row in cells])
     mean = np.array([(row["dx_px"], row["dy_px"]) for row in cells])
     size = _spacing(place)

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..document import format as fmt
+from ..document.drawing import Drawing
 from ..figures import style
 from .view import (
     FIXED,
@@ -34,7 +35,7 @@ _MODEL_SERIES = (
 )
 
 
-def by_model(results: Results) -> style.Drawing | None:
+def by_model(results: Results) -> Drawing | None:
     """Parallax of every model in the order of flight, strips side by side."""
     models = rows(results, "models")
     values = fmt.present(model[key] for model in models for key, *_ in _MODEL_SERIES)
@@ -64,7 +65,7 @@ def by_model(results: Results) -> style.Drawing | None:
     return style.finish(figure, "models", "Vertical parallax of every stereo model", caption)
 
 
-def error_sources(results: Results) -> style.Drawing | None:
+def error_sources(results: Results) -> Drawing | None:
     """Bars per strip: what relative orientation leaves with POS angles held."""
     caption = (
         "Error sources: mean RMS vertical parallax per strip after relative orientation with POS "
@@ -79,7 +80,7 @@ def error_sources(results: Results) -> style.Drawing | None:
     return style.finish(figure, "error_sources", "Vertical parallax with POS angles held", caption)
 
 
-def corrected(results: Results) -> style.Drawing | None:
+def corrected(results: Results) -> Drawing | None:
     """Bars per strip: raw, each angle corrected alone, selected set, relative orientation."""
     chosen = verdict(results).get("corrected_angles") or []
     words = f"Selected: {fmt.joined(chosen)}." if chosen else "No correction was selected."
@@ -155,7 +156,7 @@ def bar_figure(
     """
     shown = [group for group in groups if group.of_strip]
     strips = [strip for strip in strips if any(strip in group.of_strip for group in shown)]
-    labels = [style.shortened(strip) for strip in strips]
+    labels = [fmt.shortened(strip) for strip in strips]
     figure = style.new_figure(2.25 + 0.05 * max(len(label) for label in labels))
     axis = figure.add_subplot()
     style.log_axis(axis, [height for group in shown for height in group.of_strip.values()])

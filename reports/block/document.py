@@ -1,8 +1,9 @@
 """The document of a block's report."""
 
+from ..document.drawing import Drawing
+from ..document.front import Verdict
 from ..document.key_figure import key_figures
-from ..document.numbering import SIMULATED, ReportDocument, numbered
-from ..figures.style import Drawing
+from ..document.numbering import ReportDocument, numbered
 from . import figures, sections
 from .verdict import is_coarse, paragraph
 from .view import Results
@@ -22,14 +23,14 @@ def build(results: Results, drawings: dict[str, Drawing] | None = None) -> Repor
     shown, numbered_parts = numbered(opening, parts)
     block = results["block"]
     return ReportDocument(
+        language="en",
         title="Vertical parallax and POS angle errors",
         subject=str(block["name"]),
         subtitle=sections.subtitle(results),
-        mark=SIMULATED if block.get("simulated") else "",
+        mark="Simulated data" if block.get("simulated") else "",
         created=str(results.get("created") or "").partition("T")[0],
         version=str(results.get("posstats_version") or ""),
-        verdict=paragraph(results),
-        coarse=is_coarse(results),
+        verdict=Verdict(paragraph(results), "coarse" if is_coarse(results) else ""),
         key_figures=key_figures(results),
         opening=shown,
         sections=numbered_parts,

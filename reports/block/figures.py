@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from ..figures.style import Drawing, style
+from ..document.drawing import Drawing
+from ..figures.style import style
 from . import bar_figures as figure_parallax
 from . import plan_figures as figure_plan
 from .line_figures import regressions

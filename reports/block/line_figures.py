@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
 from ..document import format as fmt
+from ..document.drawing import Drawing
 from ..figures import style
 from .view import Results, Row, angles, decided_by_strip, first, rows, setting
 
@@ -137,14 +138,14 @@ def _line(row: Row, *names: str) -> Line | None:
     return Line(*(float(value) for value in values if value is not None))
 
 
-def regressions(results: Results) -> list[style.Drawing]:
+def regressions(results: Results) -> list[Drawing]:
     """One figure per angle of the frame of the corrections, if its errors are in the results."""
     frame = setting(results, "frame", "ground")
     drawings = [_regression(results, frame, angle) for angle in angles(frame)]
     return [drawing for drawing in drawings if drawing]
 
 
-def _regression(results: Results, frame: str, angle: str) -> style.Drawing | None:
+def _regression(results: Results, frame: str, angle: str) -> Drawing | None:
     data = used_errors(results, angle)
     if not data:
         return None
@@ -189,7 +190,7 @@ def draw_errors(
     """Errors of an angle with the fitted lines; `strip_words` names a strip in the legend."""
     for strip, part, look in _by_strip(data):
         errors = [row[f"{angle}_rad"] for row in part]
-        label = strip_words.format(strip=style.shortened(strip))
+        label = strip_words.format(strip=fmt.shortened(strip))
         panel.points([row["time_s"] for row in part], errors, label, look)
     for scope, (ols, gls) in lines.items():
         times = _times(data, scope)

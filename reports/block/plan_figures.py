@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..document import format as fmt
+from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import (
     FloatArray,
@@ -35,7 +36,7 @@ BESIDE_IN, BELOW_IN = 1.8, 0.95  # room for axis labels and colour bar, and for 
 BESIDE_TURNED_IN, BELOW_TURNED_IN = 0.9, 1.5  # the same with the colour bar below
 
 
-def block_plan(results: Results) -> style.Drawing | None:
+def block_plan(results: Results) -> Drawing | None:
     """Plan with north up, or right if the block is long; None without image positions."""
     images = rows(results, "images")
     if not images:
@@ -66,7 +67,7 @@ def block_plan(results: Results) -> style.Drawing | None:
     return style.finish(figure, "plan", "Plan of the block", caption)
 
 
-def check_point_plan(results: Results) -> style.Drawing | None:
+def check_point_plan(results: Results) -> Drawing | None:
     """Differences at check points before and after the selected correction, shift removed."""
     words = {"pos": "POS as delivered", "selected": "after the selected correction"}
     return difference_plan(results, words, centred=True)
@@ -74,7 +75,7 @@ def check_point_plan(results: Results) -> style.Drawing | None:
 
 def difference_plan(
     results: Results, orientations: Mapping[str, str], *, centred: bool
-) -> style.Drawing | None:
+) -> Drawing | None:
     """Differences at check points from several orientations, one panel each; None without.
 
     Parameters
@@ -214,7 +215,7 @@ def _strip_labels(
         stations = [(r["x_m"], r["y_m"]) for r in images if r["strip"] == strip]
         if not stations:
             continue
-        text = style.shortened(strip, LABEL_LENGTH)
+        text = fmt.shortened(strip, LABEL_LENGTH)
         place = view.on_paper(stations) * points_per_metre
         offset = _free_offset(place, text, taken)
         taken.append((place[0] + offset, text))

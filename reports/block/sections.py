@@ -2,7 +2,7 @@
 
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
-from ..figures.style import Drawing
+from ..document.drawing import Drawing
 from . import parallax_tables, regression_tables, statistics_tables
 from .view import Results, decided_by_strip, has_mm, rows, setting
 

@@ -1,7 +1,9 @@
-"""Every word of the acceptance document: message catalogues (gettext), read with Babel.
+"""Every word of the reports: message catalogues (gettext), read with Babel.
 
 Messages have symbolic ids such as ``verdict.accepted``, in English too: no wording stands in code.
-Values are put in by name (`str.format`); plurals follow the rule in the catalogue's head.
+Values are put in by name (`str.format`); plurals follow the rule in the catalogue's head. A
+catalogue is made of domains, one file each: ``document`` for what all documents say, and one for
+every kind of report.
 """
 
 import gettext
@@ -15,7 +17,7 @@ from babel.messages.pofile import read_po
 from posstats.errors import PosstatsError
 
 LANGUAGES = ("en", "zh")
-_PATH = "locale/{language}/LC_MESSAGES/acceptance.po"
+_PATH = "locale/{language}/LC_MESSAGES/{domain}.po"
 
 
 class MissingMessageError(KeyError):
@@ -82,17 +84,33 @@ def name_in(family: str, key: str) -> str:
 
 
 @cache
-def catalogue(language: str) -> Catalogue:
+def catalogue(language: str, *domains: str) -> Catalogue:
     """The catalogue of a language, read once.
+
+    Parameters
+    ----------
+    language
+        ``en`` or ``zh``.
+    domains
+        Names of the files that it is made of; an id stands in one of them only.
 
     Raises
     ------
     PosstatsError
-        If there is none.
+        If there is no such language.
     """
     if language not in LANGUAGES:
         raise PosstatsError(f"no language {language!r}; there are {', '.join(LANGUAGES)}")
-    path = resources.files("posstats.reports").joinpath(_PATH.format(language=language))
+    parts = [_domain(language, domain) for domain in domains]
+    messages = {name: forms for part in parts for name, forms in part.messages.items()}
+    return Catalogue(language, messages, parts[0].form_of)
+
+
+@cache
+def _domain(language: str, domain: str) -> Catalogue:
+    path = resources.files("posstats.reports").joinpath(
+        _PATH.format(language=language, domain=domain)
+    )
     with path.open("rb") as stream:
         read = read_po(stream, locale=language)
     messages = {_id(each.id): _forms(each.string) for each in read if each.id}

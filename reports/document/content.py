@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..figures.style import Drawing
+from .drawing import Drawing
 from .table import Table
 
 

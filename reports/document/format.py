@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 MISSING = "–"
@@ -125,6 +125,12 @@ def joined(words: Iterable[str], conjunction: str = "and") -> str:
     return f"{', '.join(head)} {conjunction} {last}" if head else last
 
 
+def shortened(text: str, length: int = 18) -> str:
+    """A long id with its middle left out."""
+    half = (length - 1) // 2
+    return text if len(text) <= length else f"{text[:half]}…{text[-half:]}"
+
+
 @dataclass(frozen=True)
 class Unit:
     """A unit for showing: its name and how many of it one SI unit is."""
@@ -178,3 +184,39 @@ def rate(value_rad_per_s: float | None) -> str:
         return MISSING
     per_hour = number(math.degrees(value_rad_per_s) * 3600.0)
     return f"{scientific(value_rad_per_s)}\u00a0rad/s ({per_hour}°/h)"
+
+
+def by_name(name: str, value: object, join: Callable[[Iterable[str]], str]) -> str:
+    """A value of a notice as text: its unit is the suffix of its name.
+
+    Parameters
+    ----------
+    name
+        Such as ``slope_rad_per_s``, ``parallax_px``, ``p_value``.
+    value
+        A number, a text, several texts, or None.
+    join
+        Makes an enumeration of texts.
+    """
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple | list):
+        return join(by_name(name, each, join) for each in value)
+    if value is None or not isinstance(value, int | float):
+        return MISSING
+    for suffix, write in _WRITTEN.items():
+        if name.endswith(suffix):
+            return write(value)
+    return count(value) if isinstance(value, int) else number(value)
+
+
+_WRITTEN: dict[str, Callable[[float], str]] = {
+    "_rad_per_s": rate,
+    "_rad": angle,
+    "_px": lambda value: with_unit(value, "px"),
+    "_mm": lambda value: with_unit(value, "mm"),
+    "_m": lambda value: with_unit(value, "m"),
+    "_s": lambda value: with_unit(value, "s"),
+    "_share": lambda value: with_unit(100.0 * value, "%"),
+    "p_value": p_value,
+}

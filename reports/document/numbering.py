@@ -4,12 +4,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..figures.style import Drawing
 from .content import Bullets, Content, Labelled, Paragraph, Part
-from .key_figure import KeyFigure
+from .drawing import Drawing
+from .format import shortened
+from .front import Front
+from .letters import width
 from .table import Table
 
-SIMULATED = "Simulated data"
+LONG_SUBJECT = 64  # letters
 
 
 @dataclass(frozen=True)
@@ -43,31 +45,28 @@ class Section:
     items: tuple[Item, ...]
 
 
-@dataclass(frozen=True)
-class ReportDocument:
-    """All that templates see.
+@dataclass(frozen=True, kw_only=True)
+class ReportDocument(Front):
+    """All that templates see: the front, what stands before the contents, the sections."""
 
-    `title` says what kind of report this is, `subject` what it is about; `created` is a date as
-    text or empty, `mark` a mark for every page (simulated data) or empty, `opening` the items
-    between the verdict and the contents.
-    """
-
-    title: str
-    subject: str
-    subtitle: str
-    mark: str
-    created: str
-    version: str
-    verdict: str
-    coarse: bool
-    key_figures: tuple[KeyFigure, ...]
-    opening: tuple[Item, ...]
+    opening: tuple[Item, ...] = ()
     sections: tuple[Section, ...]
 
     @property
     def text(self) -> str:
         """Every character that can be shown, for choosing the glyphs to embed."""
         return repr(self)
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the subject needs smaller letters."""
+        return width(self.subject) > LONG_SUBJECT
+
+    @property
+    def running(self) -> str:
+        """The subject as it stands above every page, its middle left out if it is long."""
+        wide = width(self.subject) / max(len(self.subject), 1)
+        return shortened(self.subject, int(LONG_SUBJECT / max(wide, 1.0)))
 
 
 def numbered(

@@ -29,6 +29,7 @@ CSV_TABLES = (
     "observability",
     "frames",
 )
+_CODES = ("notice", "notices", "rotations")  # beside the words that stand for them
 _VECTOR_PARTS = {"slope_ci95": ("low", "high"), "gls_slope_ci95": ("low", "high"), "shift_m": "xyz"}
 
 
@@ -177,6 +178,8 @@ def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
     """One value per name: intervals and vectors in several columns, lists of words in one."""
     flat: dict[str, Any] = {}
     for name, value in row.items():
+        if name in _CODES:
+            continue
         if name in _VECTOR_PARTS:
             parts = value or (None,) * len(_VECTOR_PARTS[name])
             flat |= {

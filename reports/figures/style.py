@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -14,6 +13,8 @@ from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
 from ..document import format as fmt
+from ..document.drawing import Drawing
+from ..document.format import shortened
 from ..typefaces.fonts import FAMILY
 from .svg import embeddable
 
@@ -63,16 +64,6 @@ _RC: dict[str, Any] = {
     "svg.hashsalt": "posstats",
 }
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A finished figure: `name` is its identifier, `title` its alternative text."""
-
-    name: str
-    title: str
-    caption: str
-    svg: str
 
 
 def style(families: Sequence[str] = (FAMILY,)) -> Any:
@@ -153,12 +144,6 @@ def strip_ticks(axis: Axes, centres: Sequence[float], strips: Sequence[str]) -> 
     )
     axis.tick_params(axis="x", length=0)
     axis.set_xlabel("strip")
-
-
-def shortened(text: str, length: int = 18) -> str:
-    """A long id with its middle left out."""
-    half = (length - 1) // 2
-    return text if len(text) <= length else f"{text[:half]}…{text[-half:]}"
 
 
 def legend_below(figure: Figure, axis: Axes, columns: int) -> None:

@@ -8,10 +8,11 @@ from typing import TypedDict
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from ..document.catalogue import Catalogue, catalogue
+from ..document.drawing import Drawing
 from ..document.numbering import ReportDocument
 from ..document.table import Column
-from ..figures.style import Drawing
-from ..typefaces import fonts
+from ..typefaces import cjk, fonts
 
 TEMPLATE = "report.html.j2"
 
@@ -29,18 +30,23 @@ WHITE_SPACE = _WhiteSpace(trim_blocks=True, lstrip_blocks=True, keep_trailing_ne
 class PageWords:
     """Words that the templates themselves need; `stop` stands after the number of a table."""
 
-    language: str = "en"
-    contents: str = "Contents"
-    table: str = "Table"
-    figure: str = "Figure"
-    stop: str = "."
+    language: str
+    contents: str
+    table: str
+    figure: str
+    stop: str
 
 
 def render(document: ReportDocument) -> str:
-    """Render a document as HTML: stylesheet, typeface and figures inside, nothing loaded.
+    """Render a document as HTML: stylesheet, typefaces and figures inside, nothing loaded.
 
     Every text of the document is escaped; only figures, which escape their own texts, and the
     stylesheet pass as markup.
+
+    Raises
+    ------
+    PosstatsError
+        If the document is in Chinese and no typeface for it is installed.
     """
     environment = Environment(
         loader=PackageLoader("posstats.templates", ""),
@@ -48,18 +54,33 @@ def render(document: ReportDocument) -> str:
         undefined=StrictUndefined,
         **WHITE_SPACE,
     )
-    dress(environment, PageWords())
+    dress(environment, catalogue(document.language, "document"))
     css = resources.files("posstats.templates").joinpath("report.css").read_text(encoding="utf-8")
     template = environment.get_template(TEMPLATE)
-    return template.render(report=document, css=Markup(css), faces=fonts.faces(document.text))  # noqa: S704
+    faces = fonts.faces(document.text)
+    if document.language == "zh":
+        faces = (*faces, *cjk.faces(document.text))
+    return template.render(report=document, css=Markup(css), faces=faces)  # noqa: S704 - ours
 
 
-def dress(environment: Environment, words: PageWords) -> None:
+def dress(environment: Environment, words: Catalogue) -> None:
     """Give an environment what the common templates use."""
     environment.filters["svg"] = _svg
     environment.filters["cell_class"] = _cell_class
     environment.filters["typeset"] = _typeset
-    environment.globals["words"] = words
+    environment.globals["words"] = page_words(words)
+    environment.globals["say"] = words.text
+
+
+def page_words(words: Catalogue) -> PageWords:
+    """Words of the page itself in the language of a catalogue."""
+    return PageWords(
+        language={"zh": "zh-CN"}.get(words.language, words.language),
+        contents=words.text("page.contents"),
+        table=words.text("page.table"),
+        figure=words.text("page.figure"),
+        stop=words.text("page.stop"),
+    )
 
 
 def _cell_class(column: Column) -> Markup:

@@ -13,6 +13,7 @@ from matplotlib import font_manager
 
 from posstats.errors import PosstatsError
 
+from ..document.letters import is_cjk
 from . import fonts
 from .embolden import embolden
 
@@ -110,11 +111,6 @@ def unshown(text: Iterable[str]) -> str:
     except MissingFontError:
         known = frozenset()
     return "".join(sorted(each for each in foreign if ord(each) not in known))
-
-
-def is_cjk(letter: str) -> bool:
-    """Whether a character belongs to Chinese, Japanese or Korean writing."""
-    return unicodedata.east_asian_width(letter) in "WF" and ord(letter) < 0x1F000
 
 
 def legible(text: str) -> str:

@@ -15,7 +15,7 @@ from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 from ...block import figures
 from ...block.folder import write_analysis
 from ...document import table as tables
-from ...figures.style import Drawing
+from ...document.drawing import Drawing
 from ...output.progress import progress_bar
 from . import figures as paper_figures
 

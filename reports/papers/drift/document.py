@@ -7,8 +7,9 @@ from posstats.papers.drift.seeds import repeated
 from posstats.version import __version__
 
 from ...document import format as fmt
+from ...document.front import Verdict
 from ...document.key_figure import KeyFigure
-from ...document.numbering import SIMULATED, ReportDocument, numbered
+from ...document.numbering import ReportDocument, numbered
 from .conclusions import Conclusion
 from .sections import Figures, opening, sections
 
@@ -31,14 +32,14 @@ def build(
     """
     first_page, parts = numbered(opening(found), sections(run, found, figures))
     return ReportDocument(
+        language="en",
         title="A published experiment, repeated on known truth",
         subject="POS angle errors in three test areas",
         subtitle=_subtitle(run),
-        mark=SIMULATED,
+        mark="Simulated data",
         created=created.partition("T")[0],
         version=__version__,
-        verdict=_verdict(run, found),
-        coarse=False,
+        verdict=Verdict(_verdict(run, found)),
         key_figures=_key_figures(run),
         opening=first_page,
         sections=parts,

@@ -6,10 +6,11 @@ from ...block.bar_figures import Bars, bar_figure, corrections, held_angles
 from ...block.line_figures import Panel, generalised, legend_entries, ordinary, used_errors
 from ...block.view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
 from ...document import format as fmt
+from ...document.drawing import Drawing
 from ...figures import style
 
 
-def draw_area(area: int, results: Results) -> tuple[style.Drawing, style.Drawing, style.Drawing]:
+def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
     """The paper's three figures for one area, in millimetres at image scale and over time.
 
     Parameters
@@ -28,7 +29,7 @@ def draw_area(area: int, results: Results) -> tuple[style.Drawing, style.Drawing
         return _error_sources(area, results), _regression(area, results), _corrected(area, results)
 
 
-def _error_sources(area: int, results: Results) -> style.Drawing:
+def _error_sources(area: int, results: Results) -> Drawing:
     bars = held_angles(results, "mm")
     figure = bar_figure(bars, strips_with_models(results), "mm")
     every, omega, phi, kappa, none = bars
@@ -44,7 +45,7 @@ def _error_sources(area: int, results: Results) -> style.Drawing:
     return style.finish(figure, f"area{area}_error_sources", title, caption)
 
 
-def _corrected(area: int, results: Results) -> style.Drawing:
+def _corrected(area: int, results: Results) -> Drawing:
     bars = corrections(results, "mm", GROUND_ANGLES)
     figure = bar_figure(bars, strips_with_models(results), "mm")
     pos, omega, phi, kappa, relative = bars
@@ -66,7 +67,7 @@ def _percent(part: Bars, whole: Bars) -> str:
     return fmt.with_unit(100.0 * part.mean / whole.mean, "%")
 
 
-def _regression(area: int, results: Results) -> style.Drawing:
+def _regression(area: int, results: Results) -> Drawing:
     figure = style.new_figure(3.85)
     panels = figure.subplots(len(GROUND_ANGLES), 1, sharex=True)
     for axis, angle in zip(panels, GROUND_ANGLES, strict=True):

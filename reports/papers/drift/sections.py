@@ -10,8 +10,8 @@ from ...block import statistics_tables
 from ...block.view import first
 from ...document import format as fmt
 from ...document.content import Content, Labelled, Paragraph, Part
+from ...document.drawing import Drawing
 from ...document.table import Table, prose_column, text_column
-from ...figures.style import Drawing
 from . import tables
 from .conclusions import Conclusion
 from .remarks import differences, printed_numbers

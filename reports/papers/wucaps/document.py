@@ -8,8 +8,9 @@ from posstats.papers.wucaps.seeds import repeated
 from posstats.version import __version__
 
 from ...document import format as fmt
+from ...document.front import Verdict
 from ...document.key_figure import KeyFigure
-from ...document.numbering import SIMULATED, ReportDocument, numbered
+from ...document.numbering import ReportDocument, numbered
 from ..drift.conclusions import Conclusion
 from .sections import opening, sections
 from .words import CONTROL, TERRAIN
@@ -37,14 +38,14 @@ def build(
     """
     first_page, parts = numbered(opening(found), sections(run, found, beyond, versions))
     return ReportDocument(
+        language="en",
         title="A published experiment on known truth",
         subject="POS errors removed in the bundle block adjustment",
         subtitle=_subtitle(run),
-        mark=SIMULATED,
+        mark="Simulated data",
         created=created.partition("T")[0],
         version=__version__,
-        verdict=_verdict(run, found),
-        coarse=False,
+        verdict=Verdict(_verdict(run, found)),
         key_figures=_key_figures(run),
         opening=first_page,
         sections=parts,

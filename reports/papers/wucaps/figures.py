@@ -13,6 +13,7 @@ from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
 
 from ...document import format as fmt
+from ...document.drawing import Drawing
 from ...figures import style
 from .words import CONTROL, METHODS, SITUATIONS
 
@@ -27,7 +28,7 @@ _DIRECT_LABEL = "direct georeferencing"
 _SHOWN: tuple[Method, ...] = tuple(m for m in ALL_METHODS if m != "reference")
 
 
-def plan(run: Reproduction) -> style.Drawing:
+def plan(run: Reproduction) -> Drawing:
     """Projection centres, control and check points of both blocks, on a kilometre grid."""
     with style.style():
         figure = style.new_figure(2.6)
@@ -69,7 +70,7 @@ def _plan(axis: Axes, run: SituationRun) -> None:
     axis.set_ylabel("north, km")
 
 
-def accuracies(run: SituationRun) -> style.Drawing:
+def accuracies(run: SituationRun) -> Drawing:
     """RMSE of the check points by method and control, and what the covariance predicts."""
     with style.style():
         figure = style.new_figure(3.9)
@@ -125,7 +126,7 @@ def _places(run: SituationRun) -> Iterator[tuple[Row, float]]:
             yield row, _SHOWN.index(row.method) + step
 
 
-def parallax(run: Reproduction) -> style.Drawing:
+def parallax(run: Reproduction) -> Drawing:
     """Parallax of the models by method, with the recommended control."""
     with style.style():
         figure = style.new_figure(2.7)

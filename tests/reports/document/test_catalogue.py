@@ -15,7 +15,8 @@ from posstats.reports.acceptance import words as acceptance_words
 from posstats.reports.document.catalogue import MissingMessageError, catalogue
 from posstats.statistics import samples
 
-ENGLISH, CHINESE = catalogue("en"), catalogue("zh")
+DOMAINS = ("document", "acceptance")
+ENGLISH, CHINESE = catalogue("en", *DOMAINS), catalogue("zh", *DOMAINS)
 MAY_BE_EMPTY = {"page.after", "sentence.between"}
 ACCEPTANCE = "".join(
     path.read_text(encoding="utf-8") for path in (ROOT / "posstats" / "acceptance").glob("*.py")
@@ -32,7 +33,11 @@ def places(forms: tuple[str, ...]) -> set[str]:
 def used() -> tuple[set[str], set[str]]:
     """Ids named in modules and templates, and beginnings of ids that are put together."""
     ids, beginnings = set(), set()
-    sources = [*ROOT.glob("reports/acceptance_*.py"), ROOT / "reports" / "messages.py"]
+    sources = [
+        path
+        for room in ("acceptance", "document", "pages")
+        for path in (ROOT / "reports" / room).glob("*.py")
+    ]
     for path in sources:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.JoinedStr):
@@ -51,7 +56,7 @@ def used() -> tuple[set[str], set[str]]:
                     beginnings.add(f"{family.value}.")
                 elif isinstance(family, ast.JoinedStr):
                     beginnings |= {"method_lead.", "verify_lead.", "method.", "verify."}
-    for path in ROOT.glob("templates/*.j2"):
+    for path in ROOT.glob("templates/**/*.j2"):
         text = path.read_text(encoding="utf-8")
         ids |= set(re.findall(r"say\([\"']([\w.]+)[\"']\)", text))
         beginnings |= set(re.findall(r'say\("([\w.]+\.)" ~', text))
@@ -111,7 +116,7 @@ def test_a_missing_message_is_an_error_and_never_its_id():
     with pytest.raises(KeyError):
         ENGLISH.text("key.limit")
     with pytest.raises(PosstatsError, match="no language"):
-        catalogue("fr")
+        catalogue("fr", *DOMAINS)
 
 
 def test_plurals_follow_the_language():
