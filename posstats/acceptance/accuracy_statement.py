@@ -8,10 +8,10 @@ of a component are normal (Shapiro-Wilk); its largest residual is the largest of
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.quantities import COMPONENTS
+from posstats.arrays import Floats
 from posstats.statistics.mean_shift import (
     ComponentShift,
     MeanShiftTest,
@@ -22,8 +22,6 @@ from posstats.statistics.normality import NormalityTest, normality
 from posstats.statistics.outliers import LargestResidual, largest_residuals
 from posstats.statistics.percentiles import Percentile, ce_normal, le_normal, percentile_error
 from posstats.statistics.rmse import RmseInterval, rmse_interval
-
-_Floats = NDArray[np.float64]
 
 SEED = 1
 """Of the bootstrap: the same intervals for whoever computes them again."""
@@ -61,7 +59,7 @@ class AccuracyStatement:
 
     rmse: dict[str, RmseInterval]
     percentiles: tuple[NamedPercentile, ...]
-    covariance_m2: _Floats
+    covariance_m2: Floats
     shift: MeanShiftTest
     component_shift: tuple[ComponentShift, ...]
     normality: tuple[NormalityTest, ...]
@@ -83,14 +81,14 @@ def accuracy_statement(evidence: Evidence) -> AccuracyStatement:
     )
 
 
-def _percentile(name: str, difference_m: _Floats) -> NamedPercentile:
+def _percentile(name: str, difference_m: Floats) -> NamedPercentile:
     share = _PERCENTILES[name]
     part = difference_m[:, :2] if name.startswith("CE") else difference_m[:, 2:]
     sample = percentile_error(np.linalg.norm(part, axis=1), share, SEED)
     return NamedPercentile(name, sample, _normal(part, share) if len(part) else None)
 
 
-def _normal(part_m: _Floats, share: float) -> float:
+def _normal(part_m: Floats, share: float) -> float:
     """Of normal differences of mean zero with the second moments found: the shift is in them."""
     moments = part_m.T @ part_m / len(part_m)
     sigma = np.sqrt(np.diagonal(moments))

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.acceptance.product import Product
+from posstats.arrays import Floats
 from posstats.errors import PosstatsError
 
-_Floats = NDArray[np.float64]
 Results = Mapping[str, Any]
 Row = Mapping[str, Any]
 
@@ -60,12 +59,12 @@ class Evidence:
 
     orientation: str
     point: tuple[str, ...]
-    difference_m: _Floats
-    survey_h_m: _Floats
-    survey_v_m: _Floats
+    difference_m: Floats
+    survey_h_m: Floats
+    survey_v_m: Floats
     n_given: int
     quadrant_share: float
-    parallax_px: _Floats
+    parallax_px: Floats
     image_rms_px: float
     sigma0: float
     drift_p: float
@@ -138,13 +137,13 @@ def _number(value: float | None) -> float:
     return float("nan") if value is None else float(value)
 
 
-def _columns(rows: Sequence[Row], names: Sequence[str]) -> _Floats:
+def _columns(rows: Sequence[Row], names: Sequence[str]) -> Floats:
     """(n, k), NaN where null."""
     values = [[_number(row.get(name)) for name in names] for row in rows]
     return np.array(values, dtype=float).reshape(len(rows), len(names))
 
 
-def _survey(rows: Sequence[Row], product: Product) -> tuple[_Floats, _Floats]:
+def _survey(rows: Sequence[Row], product: Product) -> tuple[Floats, Floats]:
     """(n,) radial horizontal and vertical; sigma_xy is that of X and of Y.
 
     Where both block and product state one, the larger counts: neither may flatter the product.
@@ -169,7 +168,7 @@ def _quadrant_share(images: Sequence[Row], points: Sequence[Row]) -> float:
     return float(counts.min() / len(points))
 
 
-def _parallax(models: Sequence[Row], key: str) -> _Floats:
+def _parallax(models: Sequence[Row], key: str) -> Floats:
     numbers = (_number(row.get(key)) for row in models)
     return np.array([number for number in numbers if np.isfinite(number)], dtype=float)
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.product import Product
@@ -15,9 +14,8 @@ from posstats.acceptance.published import (
     nssda_accuracy_v,
 )
 from posstats.acceptance.reasons import Reason, Unavailable
+from posstats.arrays import Floats
 from posstats.statistics.rmse import MIN_POINTS, RmseInterval, rmse_interval
-
-_Floats = NDArray[np.float64]
 
 COMPONENTS: Mapping[str, tuple[int, ...]] = MappingProxyType(
     {"x": (0,), "y": (1,), "h": (0, 1), "v": (2,), "3d": (0, 1, 2)}
@@ -48,7 +46,7 @@ class Question:
     product: Product
     threshold: float | None = None
 
-    def differences(self, component: str) -> _Floats:
+    def differences(self, component: str) -> Floats:
         """(n, k) of the components that an RMSE joins.
 
         Raises
@@ -60,9 +58,9 @@ class Question:
             raise Unavailable(Reason("no check points"))
         return self.evidence.difference_m[:, COMPONENTS[component]]
 
-    def lengths(self, component: str) -> _Floats:
+    def lengths(self, component: str) -> Floats:
         """(n,) lengths of the differences."""
-        lengths: _Floats = np.linalg.norm(self.differences(component), axis=1)
+        lengths: Floats = np.linalg.norm(self.differences(component), axis=1)
         return lengths
 
     def survey(self, component: str) -> float:
@@ -189,7 +187,7 @@ def _quadrant_share(question: Question) -> Found:
     return Found(question.evidence.quadrant_share)
 
 
-def _parallax(statistic: Callable[[_Floats], float]) -> Callable[[Question], Found]:
+def _parallax(statistic: Callable[[Floats], float]) -> Callable[[Question], Found]:
     def find(question: Question) -> Found:
         parallax = question.evidence.parallax_px
         return Found(statistic(parallax) if len(parallax) else float("nan"))
@@ -197,11 +195,11 @@ def _parallax(statistic: Callable[[_Floats], float]) -> Callable[[Question], Fou
     return find
 
 
-def _root_mean_square(values: _Floats) -> float:
+def _root_mean_square(values: Floats) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _largest_value(values: _Floats) -> float:
+def _largest_value(values: Floats) -> float:
     return float(values.max())
 
 

@@ -9,13 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.numerics.bundle.problem import BundleProblem
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Bools = NDArray[np.bool_]
 
 _LEAST_PAIRS = 6
 _BETTER = 0.1  # the parallax of other axes over that of the measured ones
@@ -25,7 +21,7 @@ _VARIANTS = np.array(
 )
 
 
-def images_with_wrong_axes(problem: BundleProblem) -> _Ints:
+def images_with_wrong_axes(problem: BundleProblem) -> Ints:
     """Images that one of the seven other choices of axes fits ten times better.
 
     The parallax is the median over the pairs of an image's rays with the other rays of their
@@ -56,9 +52,9 @@ class _ImagePairs:
         (q,) whether the base lies along its x.
     """
 
-    other: _Ints
-    parallax: _Floats
-    along_x: _Bools
+    other: Ints
+    parallax: Floats
+    along_x: Bools
 
     def without(self, images: Sequence[int]) -> "_ImagePairs":
         """The pairs with images that are none of these."""
@@ -99,16 +95,16 @@ def _pairs_of_images(problem: BundleProblem) -> dict[int, _ImagePairs]:
     }
 
 
-def _base_along_x(problem: BundleProblem, first: _Ints, second: _Ints) -> _Bools:
+def _base_along_x(problem: BundleProblem, first: Ints, second: Ints) -> Bools:
     """(q,) whether the base lies rather along x than along y of the first ray's image."""
     one, other = problem.image[first], problem.image[second]
     base = problem.position_m[other] - problem.position_m[one]
     in_image = np.einsum("qji,qj->qi", problem.ground_from_image[one], base)
-    along: _Bools = np.abs(in_image[:, 0]) > np.abs(in_image[:, 1])
+    along: Bools = np.abs(in_image[:, 0]) > np.abs(in_image[:, 1])
     return along
 
 
-def _pairs(point: _Ints) -> tuple[_Ints, _Ints]:
+def _pairs(point: Ints) -> tuple[Ints, Ints]:
     """Pairs of rays of the same point, next and next but one in the order of the rays."""
     order = np.argsort(point, kind="stable")
     pairs = []
@@ -118,7 +114,7 @@ def _pairs(point: _Ints) -> tuple[_Ints, _Ints]:
     return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
 
 
-def _parallax(problem: BundleProblem, first: _Ints, second: _Ints, axes: _Floats) -> _Floats:
+def _parallax(problem: BundleProblem, first: Ints, second: Ints, axes: Floats) -> Floats:
     """(q,) sine of the angle of the second rays to the planes of the first and the base."""
     one = _directions(problem, problem.xy_px[first] @ axes.T, first)
     other = _directions(problem, problem.xy_px[second], second)
@@ -126,14 +122,14 @@ def _parallax(problem: BundleProblem, first: _Ints, second: _Ints, axes: _Floats
     normal = np.cross(centre[problem.image[second]] - centre[problem.image[first]], one)
     length = np.linalg.norm(normal, axis=1) * np.linalg.norm(other, axis=1)
     product = np.abs(np.einsum("qi,qi->q", normal, other))
-    sine: _Floats = np.divide(product, length, out=np.zeros_like(product), where=length > 0.0)
+    sine: Floats = np.divide(product, length, out=np.zeros_like(product), where=length > 0.0)
     return sine
 
 
-def _directions(problem: BundleProblem, xy_px: _Floats, ray: _Ints) -> _Floats:
+def _directions(problem: BundleProblem, xy_px: Floats, ray: Ints) -> Floats:
     """(q, 3) in the ground frame."""
     image = problem.image[ray]
     distance = problem.distance_px[problem.exposures.camera[image]]
     vectors = np.column_stack([xy_px, -distance])
-    turned: _Floats = np.einsum("qij,qj->qi", problem.ground_from_image[image], vectors)
+    turned: Floats = np.einsum("qij,qj->qi", problem.ground_from_image[image], vectors)
     return turned

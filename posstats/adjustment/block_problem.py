@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats
 from posstats.block.model import Block
 from posstats.errors import GeometryError
 from posstats.numerics.bundle.parameters import CommonParameter, Exposures
@@ -12,14 +12,11 @@ from posstats.numerics.bundle.pos_observations import PosObservations
 from posstats.numerics.bundle.problem import BundleProblem, Control
 from posstats.numerics.kernels.collinearity import INTERSECTED, intersect_rays
 
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
-
 _SURVEY_M = 0.01  # standard deviation of surveys that state none
 
 
 def bundle_problem(
-    block: Block, parameters: Sequence[CommonParameter] = (), *, control: _Bools | None = None
+    block: Block, parameters: Sequence[CommonParameter] = (), *, control: Bools | None = None
 ) -> BundleProblem:
     """The adjustment of a block from its POS.
 
@@ -67,7 +64,7 @@ def bundle_problem(
     )
 
 
-def _pixel_sizes(block: Block, parameters: Sequence[CommonParameter]) -> _Floats:
+def _pixel_sizes(block: Block, parameters: Sequence[CommonParameter]) -> Floats:
     """(c,) mm; 1 where not known and not needed."""
     sizes = [camera.pixel_size_mm for camera in block.cameras]
     if None in sizes and any(parameter.name.startswith("bauer") for parameter in parameters):
@@ -75,7 +72,7 @@ def _pixel_sizes(block: Block, parameters: Sequence[CommonParameter]) -> _Floats
     return np.array([1.0 if size is None else size for size in sizes])
 
 
-def _start(block: Block, distance_px: _Floats) -> _Floats:
+def _start(block: Block, distance_px: Floats) -> Floats:
     """(p, 3) intersections from POS, NaN where there is none."""
     pos, ties = block.orientations, block.tie_points
     vectors = np.column_stack([ties.xy_px, -distance_px[pos.camera[ties.image]]])
@@ -88,7 +85,7 @@ def _start(block: Block, distance_px: _Floats) -> _Floats:
     return ground
 
 
-def _control(block: Block, chosen: _Bools | None) -> Control:
+def _control(block: Block, chosen: Bools | None) -> Control:
     """The chosen ground points that are measured."""
     surveyed = block.ground_points
     if surveyed is None:

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
+from posstats.arrays import Floats
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
 from posstats.errors import BlockFormatError, PosstatsError
@@ -36,8 +36,6 @@ from posstats.numerics.bundle.pos_observations import antenna_positions, imu_ang
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation
 from posstats.version import __version__
-
-_Floats = NDArray[np.float64]
 
 SCHEMA = "posstats-calibration/1"
 _HEAD = "# Boresight and lever arm of a POS, measured minus true: see docs/wucaps.md"
@@ -64,9 +62,9 @@ class Calibration:
         Of the program that estimated it.
     """
 
-    boresight_rad: _Floats
-    lever_arm_m: _Floats | None
-    covariance: _Floats
+    boresight_rad: Floats
+    lever_arm_m: Floats | None
+    covariance: Floats
     block: str
     camera: str
     n_images: int
@@ -94,7 +92,7 @@ def calibrate(adjustment: Adjustment) -> Calibration:
 
 
 def calibration_of(
-    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, covariance: _Floats
+    block: Block, problem: BundleProblem, adjusted: AdjustedBundle, covariance: Floats
 ) -> Calibration:
     """`calibrate` of the parts of an adjustment, with a covariance (k, k) of its parameters."""
     if len(block.cameras) > 1:
@@ -165,9 +163,9 @@ def _without_lever_arm(pos: Orientations, calibration: Calibration) -> Orientati
     )
 
 
-def _variances(derivatives: _Floats, covariance: _Floats) -> _Floats:
+def _variances(derivatives: Floats, covariance: Floats) -> Floats:
     """(n, 3) from derivatives (n, 3, 3) by parameters of a covariance (3, 3)."""
-    variances: _Floats = np.einsum("nij,jk,nik->ni", derivatives, covariance, derivatives)
+    variances: Floats = np.einsum("nij,jk,nik->ni", derivatives, covariance, derivatives)
     return variances
 
 
@@ -231,7 +229,7 @@ def write_calibration(calibration: Calibration, path: Path) -> None:
     path.write_text("\n".join([_HEAD, *lines, ""]).replace("\x7f", "\\u007f"), encoding="utf-8")
 
 
-def _matrix(value: Any) -> _Floats:
+def _matrix(value: Any) -> Floats:
     """A covariance matrix of three or six rows."""
     rows = several(several(number()))(value)
     if len(rows) not in (3, 6) or any(len(row) != len(rows) for row in rows):

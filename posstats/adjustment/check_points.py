@@ -12,8 +12,8 @@ camera's parameters, W the weights and C the covariance of orientations and para
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.block.model import Block, Orientations, TiePoints
 from posstats.errors import GeometryError
 from posstats.geometry.ground.intersection import IntersectedPoints, intersect
@@ -22,9 +22,6 @@ from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS, Cameras, Images, project_rays
 from posstats.numerics.bundle.system import BundleSystem, State
 from posstats.numerics.solvers.arrow import SelectedInverse
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 _STEPS = 20
 _SETTLED_PX = 1e-7
@@ -35,8 +32,8 @@ def intersect_apart(
     problem: BundleProblem,
     adjusted: AdjustedBundle,
     orientations: Orientations,
-    points: _Ints,
-) -> tuple[IntersectedPoints, _Floats]:
+    points: Ints,
+) -> tuple[IntersectedPoints, Floats]:
     """Positions of points from the adjusted orientations, and their covariances (k, 3, 3).
 
     Parameters
@@ -81,7 +78,7 @@ def camera_values(problem: BundleProblem, adjusted: AdjustedBundle) -> Cameras:
     )
 
 
-def ideal_xy(xy_px: _Floats, camera: _Ints, cameras: Cameras) -> _Floats:
+def ideal_xy(xy_px: Floats, camera: Ints, cameras: Cameras) -> Floats:
     """Image coordinates (m, 2) without the cameras' deformation, at the stated distance.
 
     Newton's method: a camera at the origin that looks down sees the point (a, b, -1) at the
@@ -113,8 +110,8 @@ def _covariances(
     cameras: Cameras,
     rays: TiePoints,
     computed: IntersectedPoints,
-    good: _Ints,
-) -> _Floats:
+    good: Ints,
+) -> Floats:
     """(len(good), 3, 3) of the points that could be intersected."""
     sigma_px = float(np.median(problem.sigma_px))
     effects = parameter_effects(problem.parameters, problem.exposures)
@@ -134,8 +131,8 @@ def _covariances(
 
 
 def _by_unknowns(
-    by_pose: _Floats, by_camera: _Floats, camera: _Ints, effects: ParameterEffects
-) -> _Floats:
+    by_pose: Floats, by_camera: Floats, camera: Ints, effects: ParameterEffects
+) -> Floats:
     """(2 n, 6 n + r) derivatives of a point's rays by its n images and r camera parameters."""
     n, r = len(by_pose), len(effects.camera)
     by = np.zeros((n, 2, 6 * n + r))
@@ -148,7 +145,7 @@ def _by_unknowns(
     return by.reshape(2 * n, -1)
 
 
-def _joint(inverse: SelectedInverse, images: _Ints, effects: ParameterEffects) -> _Floats:
+def _joint(inverse: SelectedInverse, images: Ints, effects: ParameterEffects) -> Floats:
     """(6 n + r)^2 covariance of n images and the r camera parameters."""
     n, camera = len(images), effects.camera
     blocks = inverse.blocks(np.repeat(images, n), np.tile(images, n)).reshape(n, n, 6, 6)

@@ -5,20 +5,17 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.block.model import Block, GroundPoints
 from posstats.errors import PosstatsError
-
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
 
 ControlChoice = Literal["roles", "none", "centre", "corners", "all"] | tuple[str, ...]
 NAMED_CHOICES = ("roles", "none", "centre", "corners", "all")
 
 
-def chosen_control(block: Block, choice: ControlChoice) -> _Bools:
+def chosen_control(block: Block, choice: ControlChoice) -> Bools:
     """(g,) which of the block's ground points are control; the others are check points.
 
     Parameters
@@ -71,20 +68,20 @@ def read_ids(path: Path) -> tuple[str, ...]:
     return ids
 
 
-def _without_points(choice: ControlChoice) -> _Bools:
+def _without_points(choice: ControlChoice) -> Bools:
     if choice not in ("roles", "none", "all"):
         raise PosstatsError("the block has no ground_points.csv to choose control points from")
     return np.empty(0, dtype=bool)
 
 
-def measured_points(block: Block, surveyed: GroundPoints) -> _Bools:
+def measured_points(block: Block, surveyed: GroundPoints) -> Bools:
     """(g,) which ground points at least two images show."""
     n_rays = np.bincount(block.tie_points.point, minlength=len(block.tie_points.point_id))
     shown = {block.tie_points.point_id[k] for k in np.flatnonzero(n_rays >= 2)}
     return np.array([point in shown for point in surveyed.point], dtype=bool)
 
 
-def _numbers(surveyed: GroundPoints, measured: _Bools, ids: tuple[str, ...]) -> list[int]:
+def _numbers(surveyed: GroundPoints, measured: Bools, ids: tuple[str, ...]) -> list[int]:
     """Indices of ids."""
     number = {str(point): k for k, point in enumerate(surveyed.point)}
     findings = []
@@ -99,8 +96,8 @@ def _numbers(surveyed: GroundPoints, measured: _Bools, ids: tuple[str, ...]) -> 
     return [number[each] for each in ids]
 
 
-def _nearest(block: Block, surveyed: GroundPoints, candidates: NDArray[np.intp], choice: str) -> (
-    NDArray[np.intp]
+def _nearest(block: Block, surveyed: GroundPoints, candidates: Ints, choice: str) -> (
+    Ints
 ):  # fmt: skip
     """The points nearest the middle, or the corners, of the rectangle of projection centres."""
     turned = _along_flight(block)
@@ -120,7 +117,7 @@ def _nearest(block: Block, surveyed: GroundPoints, candidates: NDArray[np.intp],
     return candidates[nearest]
 
 
-def _along_flight(block: Block) -> _Floats:
+def _along_flight(block: Block) -> Floats:
     """Rotation (2, 2): columns along and across the mean direction of the strips.
 
     Opposite headings count as one: directions are averaged at twice their angle.

@@ -10,10 +10,10 @@ from dataclasses import replace
 from typing import get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.screening import contradicting_rays, without_rays
+from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, Orientations
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.formats.block_toml import RADIANS_PER_UNIT, AngleUnit, FileAngleSystem
@@ -21,9 +21,6 @@ from posstats.formats.block_writing import source_of
 from posstats.formats.convention import Convention
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import CommonParameter
-
-_Bools = NDArray[np.bool_]
-_Floats = NDArray[np.float64]
 
 GROSS = 10.0
 """sigma0 from which mistakes are tried out: no random error is off by so much."""
@@ -35,7 +32,7 @@ _UNITS: dict[AngleUnit, str] = {"deg": "degrees", "rad": "radians", "gon": "gon"
 def likely_mistake(
     block: Block,
     parameters: tuple[CommonParameter, ...],
-    control: _Bools,
+    control: Bools,
     sigma0: float,
 ) -> str | None:
     """The first mistake in words that, undone, brings sigma0 down to a fifth; None without.
@@ -55,7 +52,7 @@ def likely_mistake(
     )
 
 
-def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: _Bools) -> float:
+def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: Bools) -> float:
     problem = bundle_problem(block, parameters, control=control)
     if len(problem.point) == 0:
         return float("inf")
@@ -123,7 +120,7 @@ def _conventions(
     yield f"{columns[0]} and {columns[1]} are exchanged", stated, [1, 0, 2]
 
 
-def _turned(pos: Orientations, rotation: _Floats, convention: Convention) -> Orientations:
+def _turned(pos: Orientations, rotation: Floats, convention: Convention) -> Orientations:
     """The cameras with other rotations (n, 3, 3), about the point to which positions refer."""
     lever = (pos.ground_from_image - rotation) @ np.array(convention.lever_arm_m)
     return replace(
@@ -134,6 +131,6 @@ def _turned(pos: Orientations, rotation: _Floats, convention: Convention) -> Ori
     )
 
 
-def _exchanged(position_m: _Floats) -> _Floats:
+def _exchanged(position_m: Floats) -> Floats:
     """X and y exchanged."""
     return np.ascontiguousarray(position_m[:, [1, 0, 2]])

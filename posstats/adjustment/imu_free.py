@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from posstats.adjustment.block_problem import bundle_problem
@@ -23,6 +22,7 @@ from posstats.adjustment.screening import (
     without_rays,
 )
 from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
 from posstats.geometry.ground.check_points import (
@@ -37,10 +37,6 @@ from posstats.numerics.bundle.system import BundleSystem, State
 from posstats.numerics.solvers.arrow import ArrowFactor, factorised
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
 
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 Progress = Callable[[int, int], object]
 
 ORIENTATION = "bundle"
@@ -83,14 +79,14 @@ class ImuFreeBundle:
     overall: GlobalTest
     sigma_px: float
     n_rejected: int
-    contradicted_positions: _Ids
-    contradicted_control: _Ids
+    contradicted_positions: Ids
+    contradicted_control: Ids
     orientations: Orientations
-    angle_covariance_rad2: _Floats
+    angle_covariance_rad2: Floats
     check_points: CheckPointResiduals
 
     @property
-    def n_points(self) -> _Ints:
+    def n_points(self) -> Ints:
         """(n,) points that tie every image."""
         kept = ~self.adjusted.rejected
         n = len(self.adjusted.position_m)
@@ -199,7 +195,7 @@ def _image_scale(adjusted: AdjustedBundle) -> float:
     return float(np.sqrt(image.square_sum / image.redundancy))
 
 
-def _blunders(problem: BundleProblem, progress: Progress | None) -> _Bools:
+def _blunders(problem: BundleProblem, progress: Progress | None) -> Bools:
     """(m,) rays without weight after those that contradict others beyond chance are taken out.
 
     Control is left out, and positions that the others contradict are made weak, so that a wrong
@@ -216,31 +212,31 @@ def _blunders(problem: BundleProblem, progress: Progress | None) -> _Bools:
         elif wrong.any():
             kept = without_rays(_from(adjusted, kept), wrong)
         else:
-            blunders: _Bools = np.isinf(kept.sigma_px)
+            blunders: Bools = np.isinf(kept.sigma_px)
             return blunders
 
 
-def _with_weak_positions(problem: BundleProblem, images: _Ints) -> BundleProblem:
+def _with_weak_positions(problem: BundleProblem, images: Ints) -> BundleProblem:
     sigma = problem.pos.sigma_antenna_m.copy()
     sigma[images] *= _WEAK
     return replace(problem, pos=replace(problem.pos, sigma_antenna_m=sigma))
 
 
-def _worst_of_points(problem: BundleProblem, adjusted: AdjustedBundle) -> _Bools:
+def _worst_of_points(problem: BundleProblem, adjusted: AdjustedBundle) -> Bools:
     """(m,) the worst ray of every point, if it is beyond the critical value."""
     w = _largest(local_tests(problem, adjusted)["image"].w)
     worst = np.zeros(len(problem.ground_m))
     np.maximum.at(worst, problem.point, w)
     n_tested = 2 * max(int(np.isfinite(problem.sigma_px).sum()), 1)
     scale = max(_image_scale(adjusted), _SMALLEST_SCALE)
-    beyond: _Bools = w > critical_value(_ALPHA / n_tested) * scale
+    beyond: Bools = w > critical_value(_ALPHA / n_tested) * scale
     beyond &= w == worst[problem.point]
     return beyond
 
 
-def _largest(w: _Floats) -> _Floats:
+def _largest(w: Floats) -> Floats:
     """(k,) largest absolute value of rows (k, q), 0 where none is known."""
-    largest: _Floats = np.nan_to_num(np.abs(w)).max(axis=1, initial=0.0)
+    largest: Floats = np.nan_to_num(np.abs(w)).max(axis=1, initial=0.0)
     return largest
 
 
@@ -255,7 +251,7 @@ def _overall(adjusted: AdjustedBundle) -> GlobalTest:
     return GlobalTest(float(np.sqrt(square_sum / dof)), dof, 2.0 * float(tail))
 
 
-def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle, kind: str) -> _Ints:
+def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle, kind: str) -> Ints:
     """Rows of the antenna positions or the control beyond the critical value."""
     w = local_tests(problem, adjusted)[kind].w
     return np.flatnonzero(_largest(w) > critical_value(_ALPHA / max(w.size, 1)))
@@ -272,7 +268,7 @@ def _orientations(block: Block, adjusted: AdjustedBundle) -> Orientations:
     )
 
 
-def _angle_covariance(problem: BundleProblem, adjusted: AdjustedBundle) -> _Floats:
+def _angle_covariance(problem: BundleProblem, adjusted: AdjustedBundle) -> Floats:
     """(n, 3, n, 3) of the angles of all images.
 
     The selected inverse of the adjustment ends at images with a common point, so columns of the

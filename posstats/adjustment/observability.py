@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from posstats.adjustment.defects import defects, weak_parameters
 from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
+from posstats.arrays import Bools, Ids
 from posstats.errors import UndeterminedError
 from posstats.numerics.bundle.parameters import (
     BORESIGHT,
@@ -20,9 +20,6 @@ from posstats.numerics.bundle.parameters import (
     LEVER_ARM,
 )
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
-
-_Floats = NDArray[np.float64]
-_Ids = NDArray[np.object_]
 
 FEW_IMAGES = 4  # below, a part of the block is named by its images, else by its strips
 
@@ -106,7 +103,7 @@ def undetermined(
     problem: BundleProblem,
     result: AdjustedBundle,
     tests: Sequence[ParameterTest],
-    image_id: _Ids,
+    image_id: Ids,
 ) -> tuple[Undetermined, ...]:
     """What the measurements of an adjusted block do not determine.
 
@@ -146,7 +143,7 @@ def _weak_parameters(
             yield Undetermined("parameter", tuple(names), scope, defect.reason, defect.remedy)
 
 
-def _open_images(result: AdjustedBundle, image_id: _Ids) -> Iterator[Undetermined]:
+def _open_images(result: AdjustedBundle, image_id: Ids) -> Iterator[Undetermined]:
     loose = (result.redundancy_pos[:, 3:] < LEAST_REDUNDANCY).any(axis=1)
     if loose.any():
         yield Undetermined(
@@ -159,7 +156,7 @@ def _open_images(result: AdjustedBundle, image_id: _Ids) -> Iterator[Undetermine
 
 
 def unconnected(
-    problem: BundleProblem, image_id: _Ids, used: NDArray[np.bool_] | None = None
+    problem: BundleProblem, image_id: Ids, used: Bools | None = None
 ) -> Iterator[Undetermined]:
     """Parts of the block that no point ties to the others, all but the largest."""
     n_images, n_points = len(problem.position_m), len(problem.ground_m)
@@ -183,7 +180,7 @@ def unconnected(
         )
 
 
-def singular_message(error: UndeterminedError, problem: BundleProblem, image_id: _Ids) -> str:
+def singular_message(error: UndeterminedError, problem: BundleProblem, image_id: Ids) -> str:
     """What singular normal equations leave open, why, and what would determine it."""
     sentences = [each.sentence for each in defects(problem, tuple(image_id), error)]
     apart = unconnected(problem, image_id)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.check_points import camera_values
 from posstats.adjustment.settings import INTERIOR
@@ -18,6 +17,7 @@ from posstats.adjustment.significance import HIGH_CORRELATION
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.steps import Adjustment
 from posstats.adjustment.weights import variance_factors
+from posstats.arrays import Floats, Ids
 from posstats.contract.record import plain
 from posstats.contract.versions import versions
 from posstats.formats.adjusted_writing import write_adjusted, write_points
@@ -28,7 +28,6 @@ from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, wrapped
 from posstats.version import __version__
 
-_Floats = NDArray[np.float64]
 Row = dict[str, Any]
 
 SCHEMA = "posstats-adjustment/1"
@@ -111,7 +110,7 @@ def write_adjustment(adjustment: Adjustment, folder: str | PathLike[str]) -> Non
     write_points(adjustment.block, position, covariance, columns, target / "points.csv")
 
 
-def all_points(adjustment: Adjustment) -> tuple[_Floats, _Floats, NDArray[np.object_]]:
+def all_points(adjustment: Adjustment) -> tuple[Floats, Floats, Ids]:
     """Positions (p, 3), covariances (p, 3, 3), computing frame, and roles (p,) of all points."""
     adjusted, block = adjustment.adjusted, adjustment.block
     position = adjusted.ground_m.copy()
@@ -194,16 +193,16 @@ def _group_rows(adjustment: Adjustment) -> Iterator[Row]:
     }
 
 
-def _observed(residual: _Floats, redundancy: _Floats) -> _Floats:
+def _observed(residual: Floats, redundancy: Floats) -> Floats:
     return np.where(np.isnan(redundancy), np.nan, residual)
 
 
-def _rms(values: _Floats) -> float | None:
+def _rms(values: Floats) -> float | None:
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else None
 
 
-def _median(values: _Floats) -> float | None:
+def _median(values: Floats) -> float | None:
     known = values[np.isfinite(values)]
     return float(np.median(known)) if len(known) else None
 
@@ -301,7 +300,7 @@ def _control_rows(adjustment: Adjustment) -> Iterator[Row]:
         }
 
 
-def _largest(w: _Floats) -> float | None:
+def _largest(w: Floats) -> float | None:
     known = w[np.isfinite(w)]
     return float(known[np.abs(known).argmax()]) if len(known) else None
 

@@ -4,14 +4,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
+from posstats.arrays import Bools, Floats
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
-
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
 
 _FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
 _WEAK_POS = 100.0  # times the stated standard deviations
@@ -20,7 +17,7 @@ _MUTE = 1e4  # times its standard deviation a ray follows the others, and its re
 
 def contradicting_rays(
     problem: BundleProblem, progress: Callable[[int, int], object] | None = None
-) -> _Bools:
+) -> Bools:
     """(m,) rays that a robust adjustment rejects, far from all others.
 
     Control is left out and POS weak, so that a wrong control point or exposure does not turn
@@ -44,7 +41,7 @@ def contradicting_rays(
     result = adjust(relaxed, robust=True, progress=progress)
     limit = _FAR * _image_scale(result)
     known = np.isfinite(result.ground_m[problem.point, 0])
-    suspected: _Bools = result.rejected & known & ~wrong
+    suspected: Bools = result.rejected & known & ~wrong
     suspected &= _largest(result, problem.sigma_px[:, None]) > limit
     if suspected.any():
         suspected &= _largest_w(relaxed, result, suspected) > limit
@@ -57,13 +54,13 @@ def _image_scale(result: AdjustedBundle) -> float:
     return float(np.sqrt(image.square_sum / max(image.redundancy, 1.0)))
 
 
-def _largest(result: AdjustedBundle, sigma_px: _Floats) -> _Floats:
+def _largest(result: AdjustedBundle, sigma_px: Floats) -> Floats:
     """(m,) the larger residual of a ray over sigma_px, (m, 1) or (m, 2); NaN behind a camera."""
-    largest: _Floats = np.abs(result.residual_px / sigma_px).max(axis=1)
+    largest: Floats = np.abs(result.residual_px / sigma_px).max(axis=1)
     return largest
 
 
-def _largest_w(problem: BundleProblem, result: AdjustedBundle, suspected: _Bools) -> _Floats:
+def _largest_w(problem: BundleProblem, result: AdjustedBundle, suspected: Bools) -> Floats:
     """(m,) how far suspected rays are from where the others see their points, over its sigma.
 
     That sigma holds the point's own, which of a point of few rays is larger than the measurement's:
@@ -90,7 +87,7 @@ def pos_holds(problem: BundleProblem) -> bool:
     return bool((problem.pos.weight > 0.0).all())
 
 
-def without_rays(problem: BundleProblem, rays: _Bools) -> BundleProblem:
+def without_rays(problem: BundleProblem, rays: Bools) -> BundleProblem:
     """The problem without weight of rays (m,)."""
     return replace(problem, sigma_px=np.where(rays, np.inf, problem.sigma_px))
 

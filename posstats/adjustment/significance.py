@@ -10,16 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.bundle.parameters import UNITS, CommonParameter, parameter_effects
 from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 SIGNIFICANCE = 0.05
 BLUNDER_ALPHA = 0.001
@@ -98,12 +95,12 @@ class Correlations:
         correlation of every parameter with an orientation.
     """
 
-    first: _Ints
-    second: _Ints
-    value: _Floats
-    image: _Ints
-    element: _Ints
-    with_image: _Floats
+    first: Ints
+    second: Ints
+    value: Floats
+    image: Ints
+    element: Ints
+    with_image: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +121,9 @@ class LocalTest:
         Of blunders.
     """
 
-    w: _Floats
-    blunder: _Floats
-    detectable: _Floats
+    w: Floats
+    blunder: Floats
+    detectable: Floats
     n_unchecked: int
     unit: str
 
@@ -145,7 +142,7 @@ def scale(result: AdjustedBundle) -> float:
     return result.sigma0 if result.dof > 0 else 1.0
 
 
-def parameter_covariance(problem: BundleProblem, result: AdjustedBundle) -> _Floats:
+def parameter_covariance(problem: BundleProblem, result: AdjustedBundle) -> Floats:
     """(k, k) of the additional parameters: sigma0 scales the measurements, not the priors.
 
     With Q the inverse of N + P, N of the measurements and P the weights of the priors, it is
@@ -154,7 +151,7 @@ def parameter_covariance(problem: BundleProblem, result: AdjustedBundle) -> _Flo
     """
     variance, q = scale(result) ** 2, result.common_covariance
     prior = np.array([parameter.weight for parameter in problem.parameters])
-    covariance: _Floats = variance * q + (1.0 - variance) * (q * prior) @ q
+    covariance: Floats = variance * q + (1.0 - variance) * (q * prior) @ q
     return covariance
 
 
@@ -187,7 +184,7 @@ def _determined(parameter: CommonParameter, stated: float, effect: float) -> boo
     return effect <= MOST_EFFECT
 
 
-def largest_effects(problem: BundleProblem) -> _Floats:
+def largest_effects(problem: BundleProblem) -> Floats:
     """(k,) by how many of its standard deviations a unit of a parameter moves an observation.
 
     The most over all observations; lever arm and boresight as if along the axes they move.
@@ -195,7 +192,7 @@ def largest_effects(problem: BundleProblem) -> _Floats:
     effects = parameter_effects(problem.parameters, problem.exposures)
     root = np.sqrt(problem.pos.weight)
     gnss = (np.abs(effects.gnss) * root[:, :3, None]).max(axis=(0, 1))
-    largest: _Floats = np.maximum(gnss, (np.abs(effects.imu) * root[:, 3:, None]).max(axis=(0, 1)))
+    largest: Floats = np.maximum(gnss, (np.abs(effects.imu) * root[:, 3:, None]).max(axis=(0, 1)))
     largest[effects.lever_arm[effects.lever_arm >= 0]] = root[:, :3].max()
     largest[effects.boresight[effects.boresight >= 0]] = root[:, 3:].max()
     column = effects.camera_column[problem.exposures.camera[problem.image]]
@@ -205,7 +202,7 @@ def largest_effects(problem: BundleProblem) -> _Floats:
     return largest
 
 
-def _image_effects(problem: BundleProblem) -> _Floats:
+def _image_effects(problem: BundleProblem) -> Floats:
     """(m, 11) lengths in standard deviations of the derivatives by `CAMERA_PARAMETERS`."""
     camera = problem.exposures.camera[problem.image]
     c, mm = problem.distance_px[camera], problem.mm_per_px[camera]
@@ -221,7 +218,7 @@ def _image_effects(problem: BundleProblem) -> _Floats:
         "brown_p2": np.hypot(2.0 * a * b, r2 + 2.0 * a**2),
     }  # fmt: skip
     scale = (c / problem.sigma_px)[:, None]
-    effects: _Floats = scale * np.stack([lengths[name] for name in CAMERA_PARAMETERS], axis=1)
+    effects: Floats = scale * np.stack([lengths[name] for name in CAMERA_PARAMETERS], axis=1)
     return effects
 
 
@@ -296,7 +293,7 @@ def local_tests(
     return tests
 
 
-def control_moments(problem: BundleProblem, result: AdjustedBundle) -> tuple[_Floats, _Floats]:
+def control_moments(problem: BundleProblem, result: AdjustedBundle) -> tuple[Floats, Floats]:
     """P v (g, 3) and P Qv P (g, 3, 3) of the control points, Qv = P^-1 less cov X."""
     weight = np.asarray(np.linalg.inv(problem.control.covariance_m2), dtype=float)
     gradient = (weight @ result.residual_control_m[:, :, None])[:, :, 0]
@@ -305,9 +302,9 @@ def control_moments(problem: BundleProblem, result: AdjustedBundle) -> tuple[_Fl
 
 
 def _tested(
-    gradient: _Floats,
-    curvature: _Floats,
-    redundancy: _Floats,
+    gradient: Floats,
+    curvature: Floats,
+    redundancy: Floats,
     shift: float,
     unit: str,
     least: float = LEAST_REDUNDANCY,

@@ -12,16 +12,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.significance import critical_value, local_tests
+from posstats.arrays import Floats, Ints
 from posstats.errors import ConvergenceError, UndeterminedError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 Kind = Literal["image", "axes", "gnss", "imu", "control"]
 BLOCK_ALPHA = 0.05
@@ -52,7 +49,7 @@ class Blunder:
     kind: Kind
     index: int
     w: float
-    size: _Floats
+    size: Floats
     unit: str
 
 
@@ -196,7 +193,7 @@ def _without(problem: BundleProblem, out: list[_Suspect]) -> BundleProblem:
     )
 
 
-def _control_kept(problem: BundleProblem, out: list[int]) -> _Ints:
+def _control_kept(problem: BundleProblem, out: list[int]) -> Ints:
     """Rows of the control that are left."""
     return np.setdiff1d(np.arange(len(problem.control.point)), out)
 
@@ -249,20 +246,20 @@ def _images_of_points(problem: BundleProblem, points: set[int]) -> Mapping[int, 
     return images
 
 
-def _determined_residuals(problem: BundleProblem, result: AdjustedBundle, rays: _Ints) -> _Floats:
+def _determined_residuals(problem: BundleProblem, result: AdjustedBundle, rays: Ints) -> Floats:
     """Residuals (q, 2) of rays; NaN where the other rays do not determine the point."""
     there = np.isfinite(result.ground_m[problem.point[rays], :1])
     return np.where(there, result.residual_px[rays], np.nan)
 
 
-def _size(problem: BundleProblem, result: AdjustedBundle, suspect: _Suspect) -> _Floats:
+def _size(problem: BundleProblem, result: AdjustedBundle, suspect: _Suspect) -> Floats:
     """Measured minus adjusted."""
     at = suspect.index
     if suspect.kind == "axes":
         residual = _determined_residuals(problem, result, np.flatnonzero(problem.image == at))
         n = np.isfinite(residual).sum(axis=0)
         square_sum = np.nansum(residual**2, axis=0)
-        rms: _Floats = np.sqrt(np.divide(square_sum, n, out=np.full(2, np.nan), where=n > 0))
+        rms: Floats = np.sqrt(np.divide(square_sum, n, out=np.full(2, np.nan), where=n > 0))
         return rms
     if suspect.kind == "image":
         residual = _determined_residuals(problem, result, np.array([at]))[0]
@@ -271,7 +268,7 @@ def _size(problem: BundleProblem, result: AdjustedBundle, suspect: _Suspect) -> 
         residual = result.ground_m[control.point[at]] - control.position_m[at]
     else:
         residual = result.residual_pos[at].reshape(2, 3)[int(suspect.kind == "imu")]
-    difference: _Floats = -residual
+    difference: Floats = -residual
     return difference
 
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
@@ -41,6 +40,7 @@ from posstats.adjustment.significance import (
 )
 from posstats.adjustment.snooping import Snooping, snoop
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
+from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 from posstats.geometry.ground.check_points import (
@@ -52,8 +52,6 @@ from posstats.geometry.ground.check_points import (
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
 Progress = Callable[[str, float], object]
 
 ORIENTATION = "bundle"
@@ -97,7 +95,7 @@ class Adjustment:
     block: Block
     settings: AdjustmentSettings
     stated: BundleProblem
-    rejected: _Bools
+    rejected: Bools
     problem: BundleProblem
     adjusted: AdjustedBundle
     overall: GlobalTest
@@ -111,8 +109,8 @@ class Adjustment:
     orientations: Orientations
     check_points: CheckPointResiduals
     pos_check_points: CheckPointResiduals
-    check_point_position_m: _Floats
-    check_point_covariance_m2: _Floats
+    check_point_position_m: Floats
+    check_point_covariance_m2: Floats
 
     @property
     def scale(self) -> float:
@@ -120,7 +118,7 @@ class Adjustment:
         return scale(self.adjusted)
 
     @cached_property
-    def pose_covariance(self) -> _Floats:
+    def pose_covariance(self) -> Floats:
         """(n, 6, 6) of rotation vector (ground frame) and projection centre, scaled."""
         image = np.arange(len(self.adjusted.position_m))
         return self.scale**2 * self.adjusted.inverse.blocks(image, image)
@@ -202,7 +200,7 @@ def _no_progress(_step: str, _done: float) -> None:
     pass
 
 
-def _with_roles(block: Block, choice: ControlChoice) -> tuple[Block, _Bools]:
+def _with_roles(block: Block, choice: ControlChoice) -> tuple[Block, Bools]:
     """The block with control and check points as chosen, and (g,) which are control."""
     control = chosen_control(block, choice)
     surveyed = block.ground_points
@@ -212,12 +210,12 @@ def _with_roles(block: Block, choice: ControlChoice) -> tuple[Block, _Bools]:
     return replace(block, ground_points=replace(surveyed, is_check=is_check)), control
 
 
-def _takes_part(block: Block) -> _Bools:
+def _takes_part(block: Block) -> Bools:
     """(m,) rays that are not to check points."""
     return ~block.check_points[block.tie_points.point]
 
 
-def _some(surveyed: GroundPoints, keep: _Bools) -> GroundPoints:
+def _some(surveyed: GroundPoints, keep: Bools) -> GroundPoints:
     return GroundPoints(
         surveyed.point[keep],
         surveyed.position_m[keep],
@@ -227,9 +225,9 @@ def _some(surveyed: GroundPoints, keep: _Bools) -> GroundPoints:
     )
 
 
-def _of_wrong_axes(stated: BundleProblem) -> _Bools:
+def _of_wrong_axes(stated: BundleProblem) -> Bools:
     """(m,) rays of images with wrong axes, with which nothing converges; snooping names these."""
-    wrong: _Bools = np.isin(stated.image, images_with_wrong_axes(stated))
+    wrong: Bools = np.isin(stated.image, images_with_wrong_axes(stated))
     return wrong
 
 
@@ -241,7 +239,7 @@ def _require_points(tied: Block, stated: BundleProblem) -> None:
     raise GeometryError("the rays of no point meet in front of the images: check the POS")
 
 
-def _screened(stated: BundleProblem, settings: AdjustmentSettings, report: Progress) -> _Bools:
+def _screened(stated: BundleProblem, settings: AdjustmentSettings, report: Progress) -> Bools:
     """(m,) rejected rays."""
     if not settings.robust:
         return np.zeros(len(stated.point), dtype=bool)
@@ -265,7 +263,7 @@ def _combined(first: EstimatedWeights | None, last: EstimatedWeights) -> Estimat
     return replace(last, factor=factor)
 
 
-def _refuse_mistakes(tied: Block, stated: BundleProblem, control: _Bools, sigma0: float) -> None:
+def _refuse_mistakes(tied: Block, stated: BundleProblem, control: Bools, sigma0: float) -> None:
     if not sigma0 >= GROSS:
         return
     mistake = likely_mistake(tied, stated.parameters, control, sigma0)
@@ -277,7 +275,7 @@ def _result(
     block: Block,
     settings: AdjustmentSettings,
     stated: BundleProblem,
-    rejected: _Bools,
+    rejected: Bools,
     problem: BundleProblem,
     adjusted: AdjustedBundle,
     snooping: Snooping,
@@ -335,7 +333,7 @@ def _check_points(
     problem: BundleProblem,
     adjusted: AdjustedBundle,
     orientations: Orientations,
-) -> tuple[CheckPointResiduals, _Floats, _Floats]:
+) -> tuple[CheckPointResiduals, Floats, Floats]:
     """Residuals, positions and covariances of the check points."""
     given, points = surveyed_check_points(block)
     wrong = np.isin(block.tie_points.image, images_with_wrong_axes(stated))

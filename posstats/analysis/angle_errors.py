@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle
 from posstats.analysis.observability import (
@@ -21,6 +20,7 @@ from posstats.analysis.observability import (
     Observability,
     observability,
 )
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
@@ -35,10 +35,6 @@ from posstats.numerics.kernels.rotation import (
 )
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
 
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 ErrorSource = Literal["coplanarity", "bundle", "adjusted"]
 
 _SHOWN = 10
@@ -76,12 +72,12 @@ class AngleErrors:
 
     frame: Literal["ground", "camera"]
     source: ErrorSource
-    image: _Ids
-    strip: _Ids
-    time_s: _Floats
-    error_rad: _Floats
-    covariance_rad2: _Floats | None
-    used: _Bools
+    image: Ids
+    strip: Ids
+    time_s: Floats
+    error_rad: Floats
+    covariance_rad2: Floats | None
+    used: Bools
     observability: tuple[Observability, ...] = ()
     sigma0: float | None = None
     warnings: tuple[str, ...] = ()
@@ -90,7 +86,7 @@ class AngleErrors:
         return len(self.image)
 
     @property
-    def sigma_rad(self) -> _Floats:
+    def sigma_rad(self) -> Floats:
         """(n, 3) standard deviations; NaN where unknown."""
         if self.covariance_rad2 is None:
             return np.full(self.error_rad.shape, np.nan)
@@ -200,7 +196,7 @@ def bundle_errors(block: Block, bundle: ImuFreeBundle) -> AngleErrors:
     return replace(errors, warnings=errors.warnings + wrong)
 
 
-def _short_bases(long: _Bools) -> tuple[str, ...]:
+def _short_bases(long: Bools) -> tuple[str, ...]:
     """One sentence that counts the pairs of images left out, or none."""
     n_short = int(np.count_nonzero(~long))
     if n_short == 0:
@@ -215,9 +211,9 @@ def _short_bases(long: _Bools) -> tuple[str, ...]:
 class _Estimate:
     """Angles (n, 3), their covariance (n, 3, n, 3), tie points (n,) of the images, image noise."""
 
-    angles_rad: _Floats
-    covariance_rad2: _Floats
-    n_points: _Ints
+    angles_rad: Floats
+    covariance_rad2: Floats
+    n_points: Ints
     sigma_px: float
 
 
@@ -259,7 +255,7 @@ def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> Angl
     )
 
 
-def _undetermined(image: _Ids, n_points: _Ints, determined: _Bools) -> tuple[str, ...]:
+def _undetermined(image: Ids, n_points: Ints, determined: Bools) -> tuple[str, ...]:
     """The images without a usable angle, by reason."""
     too_few = ~determined & (n_points > 0) & (n_points < MIN_MODEL_POINTS)
     loose = ~determined & (n_points >= MIN_MODEL_POINTS)
@@ -278,7 +274,7 @@ def _undetermined(image: _Ids, n_points: _Ints, determined: _Bools) -> tuple[str
     )
 
 
-def _listed(finding: str, ids: _Ids, kind: str = "images") -> tuple[str, ...]:
+def _listed(finding: str, ids: Ids, kind: str = "images") -> tuple[str, ...]:
     """One sentence that names the images or points, or none."""
     if len(ids) == 0:
         return ()
@@ -308,7 +304,7 @@ def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErr
     return replace(errors, frame="camera", error_rad=error, covariance_rad2=covariance)
 
 
-def _about_image_axes(angles_rad: _Floats, orientations: Orientations) -> _Floats:
+def _about_image_axes(angles_rad: Floats, orientations: Orientations) -> Floats:
     """(n, 3, 3) A with R(angles + d) = R(angles) exp([A d]x) to first order."""
     system = orientations.system
     image_from_ground = np.swapaxes(rotation_from_angles(angles_rad, system), -1, -2)
@@ -318,21 +314,21 @@ def _about_image_axes(angles_rad: _Floats, orientations: Orientations) -> _Float
 
 
 def _about_ground_axes(
-    covariance_rad2: _Floats, angles_rad: _Floats, orientations: Orientations
-) -> _Floats:
+    covariance_rad2: Floats, angles_rad: Floats, orientations: Orientations
+) -> Floats:
     """Covariance (n, 3, n, 3) of small rotations about the ground axes, from that of angles."""
     rotation = rotation_from_angles(angles_rad, orientations.system)
     turn = rotation @ _about_image_axes(angles_rad, orientations)
     return _turned(covariance_rad2, turn)
 
 
-def _turned(covariance: _Floats, turn: _Floats) -> _Floats:
+def _turned(covariance: Floats, turn: Floats) -> Floats:
     """Covariance (n, 3, n, 3) of turn (n, 3, 3) times the vectors; exactly symmetric."""
-    turned: _Floats = np.einsum("iab,ibjc,jdc->iajd", turn, covariance, turn, optimize=True)
+    turned: Floats = np.einsum("iab,ibjc,jdc->iajd", turn, covariance, turn, optimize=True)
     return 0.5 * (turned + turned.transpose(2, 3, 0, 1))
 
 
-def _inverse_left_jacobian(vector_rad: _Floats) -> _Floats:
+def _inverse_left_jacobian(vector_rad: Floats) -> Floats:
     """(n, 3, 3) B with log(exp([d]x) exp([e]x)) = e + B d to first order, e (n, 3).
 
     B = I - [e]x / 2 + (1 - (t / 2) cot(t / 2)) / t^2 [e]x^2, t = |e|.
@@ -342,5 +338,5 @@ def _inverse_left_jacobian(vector_rad: _Floats) -> _Floats:
     exact = (1.0 - safe / np.tan(safe)) / (4.0 * safe**2)
     factor = np.where(half < _SMALL_ANGLE_RAD, 1.0 / 12.0 + half**2 / 180.0, exact)
     generator = skew(vector_rad)
-    jacobian: _Floats = np.eye(3) - 0.5 * generator + factor * (generator @ generator)
+    jacobian: Floats = np.eye(3) - 0.5 * generator + factor * (generator @ generator)
     return jacobian

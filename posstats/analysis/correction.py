@@ -3,22 +3,19 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.analysis.regression import BLOCK_SCOPE, AngleRegression, ConstantFit, DriftFit
 from posstats.analysis.rules import Decision, chosen_fits
+from posstats.arrays import Floats, Ids
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
-
-_Floats = NDArray[np.float64]
-_Ids = NDArray[np.object_]
 
 
 def predicted_errors(
     regressions: Sequence[AngleRegression],
     decisions: Sequence[Decision],
-    time_s: _Floats,
-    strip: _Ids,
-) -> _Floats:
+    time_s: Floats,
+    strip: Ids,
+) -> Floats:
     """Angle errors (n, 3), rad, that the decided corrections say images have.
 
     Parameters
@@ -45,7 +42,7 @@ def axis_of(decision: Decision) -> int:
     return names.index(decision.angle)
 
 
-def fitted_values(fit: DriftFit | ConstantFit | None, time_s: _Floats) -> _Floats:
+def fitted_values(fit: DriftFit | ConstantFit | None, time_s: Floats) -> Floats:
     """Line or constant at times (m,), rad; NaN where there is no fit."""
     if isinstance(fit, DriftFit):
         return fit.predict(time_s)[0]

@@ -4,11 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
-_Ids = NDArray[np.object_]
+from posstats.arrays import Bools, Floats, Ids
 
 UNDETERMINED_SHARE = 0.1  # of the prior standard deviation
 
@@ -50,13 +47,13 @@ class EstimatedAngles:
         (n,) whether an image takes part at all.
     """
 
-    image: _Ids
-    strip: _Ids
-    position_m: _Floats
-    rotation_covariance_rad2: _Floats
-    prior_sigma_rad: _Floats
-    determined: _Bools
-    tied: _Bools
+    image: Ids
+    strip: Ids
+    position_m: Floats
+    rotation_covariance_rad2: Floats
+    prior_sigma_rad: Floats
+    determined: Bools
+    tied: Bools
 
 
 def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
@@ -80,7 +77,7 @@ def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
     )
 
 
-def _open_rotations(angles: EstimatedAngles, inside: _Bools) -> Iterator[str]:
+def _open_rotations(angles: EstimatedAngles, inside: Bools) -> Iterator[str]:
     images = np.flatnonzero(inside)
     if len(images) < 2:
         return
@@ -92,7 +89,7 @@ def _open_rotations(angles: EstimatedAngles, inside: _Bools) -> Iterator[str]:
             yield _axis_name(axis, along)
 
 
-def _mean_covariance(covariance: _Floats) -> _Floats:
+def _mean_covariance(covariance: Floats) -> Floats:
     """Covariance (3, 3) of the weighted mean of n vectors whose covariance is (n, 3, n, 3).
 
     The weights are the inverse covariances of the single vectors. The best linear mean would
@@ -102,17 +99,17 @@ def _mean_covariance(covariance: _Floats) -> _Floats:
     weight = np.linalg.inv(np.einsum("iaib->iab", covariance))
     scatter = np.einsum("iab,ibjc,jcd->ad", weight, covariance, weight, optimize=True)
     inverse = np.linalg.inv(weight.sum(axis=0))
-    mean: _Floats = inverse @ scatter @ inverse
+    mean: Floats = inverse @ scatter @ inverse
     return mean
 
 
-def _principal_axes(covariance: _Floats) -> tuple[_Floats, _Floats]:
+def _principal_axes(covariance: Floats) -> tuple[Floats, Floats]:
     """Variances (3,) and unit vectors (3, 3), row by row."""
     variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
     return variances, axes.T
 
 
-def _flight_axis(position_m: _Floats, strip: _Ids) -> _Floats:
+def _flight_axis(position_m: Floats, strip: Ids) -> Floats:
     """Unit vector (3,) closest to the bases between consecutive images of a strip.
 
     Where no strip has two images, to the way from image to image.
@@ -120,11 +117,11 @@ def _flight_axis(position_m: _Floats, strip: _Ids) -> _Floats:
     base = np.diff(position_m, axis=0)
     same = strip[1:] == strip[:-1]
     _, _, axes = np.linalg.svd(base[same] if same.any() else base, full_matrices=False)
-    axis: _Floats = axes[0]
+    axis: Floats = axes[0]
     return axis
 
 
-def _axis_name(axis: _Floats, along: _Floats) -> str:
+def _axis_name(axis: Floats, along: Floats) -> str:
     """Name a rotation by the nearest of base axis, across axis and vertical."""
     across = np.cross([0.0, 0.0, 1.0], along)
     names = {

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.analysis.angle_errors import AngleErrors
 from posstats.analysis.correction import axis_of, fitted_values
@@ -16,12 +15,10 @@ from posstats.analysis.regression import (
     angle_sample,
 )
 from posstats.analysis.rules import Decision, OutOfSampleParallax
+from posstats.arrays import Floats, Ints
 from posstats.block.image_pairs import StereoModels
 from posstats.block.turned import corrected
 from posstats.geometry.stereo.parallax import model_rms_px
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 LEAVE_STRIP_OUT = "leaving one strip out"
 LEAVE_HALF_OUT = "fitting one half of a strip, testing on the other"
@@ -70,7 +67,7 @@ def out_of_sample_parallax(
     )
 
 
-def _parts(errors: AngleErrors, by_strip: bool) -> tuple[_Ints, str]:
+def _parts(errors: AngleErrors, by_strip: bool) -> tuple[Ints, str]:
     """Part (n,) of every image: its strip, or the half of its strip."""
     strips, number = np.unique(errors.strip.astype(str), return_inverse=True)
     if by_strip and len(strips) > 1:
@@ -81,7 +78,7 @@ def _parts(errors: AngleErrors, by_strip: bool) -> tuple[_Ints, str]:
     return 2 * number + half, LEAVE_HALF_OUT
 
 
-def _unseen_prediction(errors: AngleErrors, decision: Decision, part: _Ints) -> _Floats:
+def _unseen_prediction(errors: AngleErrors, decision: Decision, part: Ints) -> Floats:
     """Fitted error (n,), each image's from fits without its part; NaN where none can be made."""
     inside = (errors.strip == decision.scope) | (decision.scope == BLOCK_SCOPE)
     predicted = np.zeros(len(errors))

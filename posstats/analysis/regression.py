@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids
 from posstats.block.model import BLOCK_SCOPE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.statistics.drift import ConstantFit, DriftFit, FitError, fit_constant, fit_drift
@@ -18,7 +18,6 @@ __all__ = [
     "BLOCK_SCOPE", "AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress",
 ]  # fmt: skip
 
-_Floats = NDArray[np.float64]
 FitKind = Literal["ols", "gls"]
 _Fit = TypeVar("_Fit")
 
@@ -65,10 +64,10 @@ class AngleSample:
     without strip effect.
     """
 
-    time_s: _Floats
-    error_rad: _Floats
-    covariance_rad2: _Floats
-    strip: NDArray[np.object_] | None
+    time_s: Floats
+    error_rad: Floats
+    covariance_rad2: Floats
+    strip: Ids | None
 
     def line(self, fit: FitKind) -> DriftFit:
         """Straight line; FitError if there is none."""
@@ -104,7 +103,7 @@ def _regressions(errors: "AngleErrors") -> Iterator[AngleRegression]:
 
 
 def _regression(
-    errors: "AngleErrors", axis: int, chosen: NDArray[np.bool_], angle: str, scope: str
+    errors: "AngleErrors", axis: int, chosen: Bools, angle: str, scope: str
 ) -> AngleRegression:
     sample = angle_sample(errors, axis, chosen, scope)
     lines, line_reason = _fits_or_reason(sample.line)
@@ -136,9 +135,7 @@ def _fits_or_reason(fit: Callable[[FitKind], _Fit]) -> tuple[dict[FitKind, _Fit]
     return made, reason
 
 
-def angle_sample(
-    errors: "AngleErrors", axis: int, chosen: NDArray[np.bool_], scope: str
-) -> AngleSample:
+def angle_sample(errors: "AngleErrors", axis: int, chosen: Bools, scope: str) -> AngleSample:
     """Data of one angle (0, 1, 2) of the `chosen` (n,) images, for a fit over `scope`."""
     known = errors.covariance_rad2
     n = int(np.count_nonzero(chosen))

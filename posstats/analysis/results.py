@@ -1,7 +1,6 @@
 """Analysis -> the contract's `Results`, of which ``results.json`` and every page are made."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.analysis.rows import (
     angle_error_rows,
@@ -16,6 +15,7 @@ from posstats.analysis.rows import (
     selection_rows,
 )
 from posstats.analysis.steps import Analysis
+from posstats.arrays import Floats
 from posstats.contract.record import record
 from posstats.contract.results import (
     AnalysedBlock,
@@ -136,7 +136,7 @@ def _mean_px(analysis: Analysis, orientation: RelativeOrientation) -> float:
     return block_statistics(analysis.models, orientation.y_parallax_rms_px).mean_px
 
 
-def _median(rms_px: NDArray[np.float64]) -> float | None:
+def _median(rms_px: Floats) -> float | None:
     """Median over the models that have a value."""
     valued = rms_px[np.isfinite(rms_px)]
     return float(np.median(valued)) if len(valued) else None

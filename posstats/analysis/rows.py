@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle
 from posstats.analysis.regression import AngleRegression
 from posstats.analysis.steps import Analysis, FrameAnalysis
+from posstats.arrays import Floats
 from posstats.contract.record import record
 from posstats.contract.results import (
     AngleErrorSummary,
@@ -24,8 +24,6 @@ from posstats.contract.results import (
 from posstats.geometry.stereo.parallax import strip_statistics
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 from posstats.statistics.drift import DriftFit
-
-_Floats = NDArray[np.float64]
 
 _OLS_KEYS = (
     "n_time_clusters",
@@ -91,7 +89,7 @@ def model_rows(analysis: Analysis) -> Iterator[ModelParallax]:
         yield record(ModelParallax, values)
 
 
-def _of_model(rms_px: _Floats | None, k: int) -> float | None:
+def _of_model(rms_px: Floats | None, k: int) -> float | None:
     return None if rms_px is None else float(rms_px[k])
 
 
@@ -110,7 +108,7 @@ def corrected_parallax_rows(analysis: Analysis) -> Iterator[CorrectedParallax]:
 
 
 def _means(
-    analysis: Analysis, rms_px: Mapping[str, _Floats]
+    analysis: Analysis, rms_px: Mapping[str, Floats]
 ) -> Iterator[tuple[str, dict[str, object]]]:
     """Means over the models of every strip, for every name."""
     keys = ("strip", "n_models", "mean_mm", "mean_px")

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.imu_free import ImuFreeBundle, adjust_imu_free
 from posstats.analysis.angle_errors import (
@@ -21,6 +20,7 @@ from posstats.analysis.correction import predicted_errors
 from posstats.analysis.out_of_sample import out_of_sample_parallax
 from posstats.analysis.regression import BLOCK_SCOPE, AngleRegression, regress
 from posstats.analysis.rules import Decision, OutOfSampleParallax, RuleSet, decide, load_rules
+from posstats.arrays import Floats
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
@@ -30,7 +30,6 @@ from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 
-_Floats = NDArray[np.float64]
 Scope = Literal["block", "strip"]
 FrameChoice = Literal["ground", "camera", "auto"]
 Progress = Callable[[str, float], object]
@@ -134,7 +133,7 @@ class Analysis:
     block: Block
     settings: Settings
     models: StereoModels
-    raw_px: _Floats
+    raw_px: Floats
     independent: RelativeOrientation
     dependent: RelativeOrientation
     fixed: dict[str, RelativeOrientation]
@@ -142,8 +141,8 @@ class Analysis:
     chosen: FrameAnalysis
     frame_reason: str | None
     corrected_orientations: dict[str, Orientations]
-    corrected_px: dict[str, _Floats]
-    triangulated_px: dict[str, _Floats]
+    corrected_px: dict[str, Floats]
+    triangulated_px: dict[str, Floats]
     check_points: tuple[CheckPointResiduals, ...]
     bundle: ImuFreeBundle | None = None
 
@@ -301,7 +300,7 @@ def _triangulated(block: Block, bundle: ImuFreeBundle | None) -> dict[str, Orien
     return found if bundle is None else found | {"bundle": bundle.orientations}
 
 
-def _parallax(models: StereoModels, orientations: dict[str, Orientations]) -> dict[str, _Floats]:
+def _parallax(models: StereoModels, orientations: dict[str, Orientations]) -> dict[str, Floats]:
     """(p,) RMS y-parallax of the models, px, from each of some orientations."""
     return {
         name: model_rms_px(models.with_orientations(each)) for name, each in orientations.items()

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from posstats.arrays import Floats
 from posstats.errors import GeometryError
 
 DistortionModel = Literal["none", "radial", "brown"]
@@ -30,7 +31,7 @@ class Distortion:
     p1: float = 0.0
     p2: float = 0.0
 
-    def distorted(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    def distorted(self, uv: Floats) -> Floats:
         """Measured (..., 2) from ideal (..., 2) coordinates, in units of the principal distance."""
         u, v = uv[..., 0], uv[..., 1]
         r2 = u * u + v * v
@@ -43,7 +44,7 @@ class Distortion:
             axis=-1,
         )
 
-    def jacobian(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    def jacobian(self, uv: Floats) -> Floats:
         """Derivatives (..., 2, 2) of the measured u', v' (rows) by the ideal u, v (columns)."""
         u, v = uv[..., 0], uv[..., 1]
         r2 = u * u + v * v
@@ -56,7 +57,7 @@ class Distortion:
         jacobian[..., 1, 0] = jacobian[..., 0, 1]
         return jacobian
 
-    def undistorted(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    def undistorted(self, uv: Floats) -> Floats:
         """Ideal from measured coordinates, by Newton's method to rounding.
 
         Of several ideal points that are imaged alike, it is the one that is met first on the way
@@ -79,9 +80,7 @@ class Distortion:
                     return ideal
         raise GeometryError("the lens distortion cannot be inverted over the image format")
 
-    def _newton_step(
-        self, uv: NDArray[np.float64], ideal: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _newton_step(self, uv: Floats, ideal: Floats) -> tuple[Floats, Floats]:
         """The step (..., 2) towards the ideal point of `uv`, and the Jacobian's determinant."""
         j = self.jacobian(ideal)
         missing = uv - self.distorted(ideal)
@@ -95,7 +94,7 @@ class Distortion:
         )
         return cofactors / determinant[..., None], determinant
 
-    def _radially_undistorted(self, uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _radially_undistorted(self, uv: Floats) -> Floats:
         """A start within Newton's reach: the radial part alone, by a table up to its fold."""
         measured = np.linalg.norm(uv, axis=-1)
         reach = self._fold_radius()
@@ -106,7 +105,7 @@ class Distortion:
         radii = np.linspace(0.0, reach, _RADII)
         ideal = np.interp(measured, self._radially_distorted(radii), radii)
         scale = np.divide(ideal, measured, out=np.ones_like(measured), where=measured > 0.0)
-        start: NDArray[np.float64] = uv * scale[..., None]
+        start: Floats = uv * scale[..., None]
         return start
 
     def _radially_distorted(self, radius: Any) -> Any:
@@ -137,7 +136,7 @@ class Camera:
     pixel_size_mm: float | None = None
     distortion: Distortion = Distortion()
 
-    def ideal_from_measured(self, column_row_px: ArrayLike) -> NDArray[np.float64]:
+    def ideal_from_measured(self, column_row_px: ArrayLike) -> Floats:
         """Ideal (..., 2) x, y in px from measured (..., 2) column, row in px."""
         measured = np.asarray(column_row_px, dtype=float)
         uv = (measured - self.principal_point_px) / self.principal_distance_px
@@ -146,7 +145,7 @@ class Camera:
             -self.principal_distance_px,
         ]
 
-    def measured_from_ideal(self, xy_px: ArrayLike) -> NDArray[np.float64]:
+    def measured_from_ideal(self, xy_px: ArrayLike) -> Floats:
         """Measured (..., 2) column, row in px from ideal (..., 2) x, y in px."""
         uv = np.asarray(xy_px, dtype=float) * [1.0, -1.0] / self.principal_distance_px
         return self.distortion.distorted(uv) * self.principal_distance_px + self.principal_point_px

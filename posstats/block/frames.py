@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pyproj import CRS, Proj, Transformer
 from pyproj.exceptions import CRSError, ProjError
 
+from posstats.arrays import Floats
 from posstats.errors import GeometryError
-
-_Floats = NDArray[np.float64]
 
 _AXIS_TEST_M = 50.0
 _AXIS_TOLERANCE_RAD = 0.02  # lets grids that are not conformal pass, not turned axes
@@ -74,7 +73,7 @@ class GroundFrame:
         """Whether the computing frame differs from the coordinates of the files."""
         return self.origin_deg is not None
 
-    def to_computing(self, position_crs: ArrayLike) -> _Floats:
+    def to_computing(self, position_crs: ArrayLike) -> Floats:
         """Positions (n, 3) in the computing frame, m, from x, y, z in the crs; NaN outside it."""
         position = np.array(position_crs, dtype=float)
         if not self.is_tangent:
@@ -85,10 +84,10 @@ class GroundFrame:
             _, _, height = _geoid_shift(self.geoid).transform(longitude, latitude, height)
         geocentric = self._geocentric(longitude, latitude, height)
         offset = geocentric - self._geocentric(*self._origin, 0.0)
-        computing: _Floats = offset @ self._geocentric_from_computing
+        computing: Floats = offset @ self._geocentric_from_computing
         return computing
 
-    def to_crs(self, position: ArrayLike) -> _Floats:
+    def to_crs(self, position: ArrayLike) -> Floats:
         """Positions (n, 3) x, y, z in the crs from the computing frame; inverse of the above."""
         computing = np.array(position, dtype=float)
         if not self.is_tangent:
@@ -105,7 +104,7 @@ class GroundFrame:
         x, y = _projection(self._crs)(longitude, latitude)
         return np.stack([_finite_or_nan(values) for values in (x, y, height)], axis=-1)
 
-    def computing_from_crs_axes(self, position_crs: ArrayLike) -> _Floats:
+    def computing_from_crs_axes(self, position_crs: ArrayLike) -> Floats:
         """Rotations (n, 3, 3) of vectors along the local grid axes into the computing frame.
 
         The local axes at a point are grid east, grid north and the ellipsoid's normal there: the
@@ -119,7 +118,7 @@ class GroundFrame:
         grid = _east_north_up_from_grid(self._convergence(longitude, latitude))
         return self._geocentric_from_computing.T @ local @ grid
 
-    def convergence_rad(self, position_crs: ArrayLike) -> _Floats:
+    def convergence_rad(self, position_crs: ArrayLike) -> Floats:
         """Meridian convergence (n,): azimuth of grid north, clockwise from true north, rad."""
         return self._convergence(*self._geographic(np.asarray(position_crs, dtype=float)))
 
@@ -136,19 +135,19 @@ class GroundFrame:
         return self.origin_deg
 
     @property
-    def _geocentric_from_computing(self) -> _Floats:
+    def _geocentric_from_computing(self) -> Floats:
         longitude, latitude = (np.float64(angle) for angle in self._origin)
         grid = _east_north_up_from_grid(self._convergence(longitude, latitude))
         return _geocentric_from_east_north_up(longitude, latitude) @ grid
 
-    def _geographic(self, position_crs: _Floats) -> tuple[_Floats, _Floats]:
+    def _geographic(self, position_crs: Floats) -> tuple[Floats, Floats]:
         """Longitude and latitude, degrees."""
         longitude, latitude = _projection(self._crs)(
             position_crs[..., 0], position_crs[..., 1], inverse=True
         )
         return _finite_or_nan(longitude), _finite_or_nan(latitude)
 
-    def _convergence(self, longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> _Floats:
+    def _convergence(self, longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> Floats:
         # PROJ's factors, unlike its projections, count longitude from the crs's own meridian.
         longitude = np.asarray(longitude_deg) - _prime_meridian_deg(self._crs)
         if longitude.size == 0:  # which PROJ's factors refuse
@@ -158,7 +157,7 @@ class GroundFrame:
 
     def _geocentric(
         self, longitude_deg: ArrayLike, latitude_deg: ArrayLike, h: ArrayLike
-    ) -> _Floats:
+    ) -> Floats:
         transformer = _geocentric_from_geographic(self._crs)
         xyz = transformer.transform(longitude_deg, latitude_deg, h)
         return np.stack([_finite_or_nan(values) for values in xyz], axis=-1)
@@ -239,7 +238,7 @@ def _geoid_shift(grid: Path) -> Transformer:
         raise GeometryError(f"PROJ cannot read the geoid grid {grid.name}") from error
 
 
-def _geocentric_from_east_north_up(longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> _Floats:
+def _geocentric_from_east_north_up(longitude_deg: ArrayLike, latitude_deg: ArrayLike) -> Floats:
     """Rotations (..., 3, 3) whose columns are east, north and up at a point of the ellipsoid."""
     lam, phi = np.radians(longitude_deg), np.radians(latitude_deg)
     east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], axis=-1)
@@ -247,7 +246,7 @@ def _geocentric_from_east_north_up(longitude_deg: ArrayLike, latitude_deg: Array
     return np.stack([east, np.cross(up, east), up], axis=-1)
 
 
-def _east_north_up_from_grid(convergence_rad: _Floats) -> _Floats:
+def _east_north_up_from_grid(convergence_rad: Floats) -> Floats:
     """Rotations (..., 3, 3) of grid vectors; grid north has the azimuth `convergence_rad`."""
     cosine, sine = np.cos(convergence_rad), np.sin(convergence_rad)
     rotation = np.zeros((*np.shape(convergence_rad), 3, 3))
@@ -257,6 +256,6 @@ def _east_north_up_from_grid(convergence_rad: _Floats) -> _Floats:
     return rotation
 
 
-def _finite_or_nan(values: ArrayLike) -> _Floats:
+def _finite_or_nan(values: ArrayLike) -> Floats:
     """PROJ marks what it cannot transform with infinity."""
     return np.where(np.isfinite(values), values, np.nan)

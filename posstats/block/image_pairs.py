@@ -4,15 +4,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.camera import Camera
 from posstats.block.model import Block, Orientations, TiePoints
 from posstats.numerics.kernels.coplanarity import base_frames, y_parallax
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 MIN_MODEL_POINTS = 6
 
@@ -31,26 +27,26 @@ class ImagePairs:
         (N,) row of the block's tie points.
     """
 
-    left: _Ints
-    right: _Ints
-    offsets: _Ints
-    left_ray: _Ints
-    right_ray: _Ints
+    left: Ints
+    right: Ints
+    offsets: Ints
+    left_ray: Ints
+    right_ray: Ints
 
     def __len__(self) -> int:
         return len(self.left)
 
     @property
-    def n_points(self) -> _Ints:
+    def n_points(self) -> Ints:
         """(p,) number of common points."""
         return np.diff(self.offsets)
 
     @property
-    def pair_of_point(self) -> _Ints:
+    def pair_of_point(self) -> Ints:
         """(N,) number of the image pair of every point pair."""
         return np.repeat(np.arange(len(self)), self.n_points)
 
-    def subset(self, which: NDArray[np.bool_] | _Ints) -> "ImagePairs":
+    def subset(self, which: Bools | Ints) -> "ImagePairs":
         """The pairs `which` (mask or order), with their points."""
         chosen = np.arange(len(self))[which]
         counts = self.n_points[chosen]
@@ -93,20 +89,20 @@ class StereoModels:
 
     pairs: ImagePairs
     orientations: Orientations
-    left_vectors: _Floats
-    right_vectors: _Floats
-    pixel_size_mm: _Floats
+    left_vectors: Floats
+    right_vectors: Floats
+    pixel_size_mm: Floats
 
     def __len__(self) -> int:
         return len(self.pairs)
 
     @property
-    def strip(self) -> _Ids:
+    def strip(self) -> Ids:
         """(p,) strip of every model."""
         return self.orientations.strip[self.pairs.left]
 
     @property
-    def base_m(self) -> _Floats:
+    def base_m(self) -> Floats:
         """(p, 3) right minus left projection centre, ground frame."""
         position = self.orientations.position_m
         return position[self.pairs.right] - position[self.pairs.left]
@@ -115,7 +111,7 @@ class StereoModels:
         """The same models formed from other orientations of the same images."""
         return replace(self, orientations=orientations)
 
-    def y_parallax_px(self) -> _Floats:
+    def y_parallax_px(self) -> Floats:
         """(N,) vertical parallax of every point pair, px at image scale."""
         base = self.base_m
         base_from_ground = base_frames(base)
@@ -159,7 +155,7 @@ def form_models(block: Block, pairs: ImagePairs) -> StereoModels:
 
 def image_vectors(
     tie_points: TiePoints, orientations: Orientations, cameras: tuple[Camera, ...]
-) -> _Floats:
+) -> Floats:
     """(m, 3) image vectors (x, y, -c), px, of all measurements."""
     distance = np.array([camera.principal_distance_px for camera in cameras])
     depth = -distance[orientations.camera[tie_points.image]]
@@ -177,7 +173,7 @@ def cross_strip_pairs(block: Block, min_points: int = MIN_MODEL_POINTS) -> Image
     return pairs.subset(pairs.n_points >= min_points)
 
 
-def common_points(tie_points: TiePoints, rays: _Ints, left: _Ints, right: _Ints) -> ImagePairs:
+def common_points(tie_points: TiePoints, rays: Ints, left: Ints, right: Ints) -> ImagePairs:
     """Common points of the given image pairs; pairs without any are left out.
 
     Parameters
@@ -198,12 +194,12 @@ def common_points(tie_points: TiePoints, rays: _Ints, left: _Ints, right: _Ints)
     return found.subset(np.argsort(rank))
 
 
-def _tie_rays(block: Block) -> _Ints:
+def _tie_rays(block: Block) -> Ints:
     """Rows of the tie points that are not measurements of check points."""
     return np.flatnonzero(~block.check_points[block.tie_points.point])
 
 
-def _consecutive_images(orientations: Orientations) -> tuple[_Ints, _Ints]:
+def _consecutive_images(orientations: Orientations) -> tuple[Ints, Ints]:
     left, right = [], []
     for strip in orientations.strips:
         images = np.flatnonzero(orientations.strip == strip)
@@ -212,7 +208,7 @@ def _consecutive_images(orientations: Orientations) -> tuple[_Ints, _Ints]:
     return np.concatenate(left), np.concatenate(right)
 
 
-def _all_ray_pairs(tie_points: TiePoints, rays: _Ints) -> tuple[_Ints, _Ints, _Ints, _Ints]:
+def _all_ray_pairs(tie_points: TiePoints, rays: Ints) -> tuple[Ints, Ints, Ints, Ints]:
     """All pairs of rays of one point: images i < j and the two rows of the tie points."""
     point = tie_points.point[rays]
     first, second = [], []
@@ -229,7 +225,7 @@ def _all_ray_pairs(tie_points: TiePoints, rays: _Ints) -> tuple[_Ints, _Ints, _I
     return tie_points.image[ray_i], tie_points.image[ray_j], ray_i, ray_j
 
 
-def _grouped(code: _Ints, ray_i: _Ints, ray_j: _Ints, n_images: int) -> ImagePairs:
+def _grouped(code: Ints, ray_i: Ints, ray_j: Ints, n_images: int) -> ImagePairs:
     order = np.lexsort((ray_i, code))
     codes, counts = np.unique(code, return_counts=True)
     return ImagePairs(

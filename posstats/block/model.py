@@ -7,15 +7,11 @@ from typing import Any, Self
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.camera import Camera
 from posstats.block.frames import GroundFrame
 from posstats.numerics.kernels.rotation import AngleSystem, rotation_from_angles
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 BLOCK_SCOPE = "block"
 """Scope of what concerns all strips, where else a strip's id stands; no strip has this id."""
@@ -41,21 +37,21 @@ class Orientations:
         (n, 3) stated standard deviations.
     """
 
-    image: _Ids
-    strip: _Ids
-    time_s: _Floats
-    position_m: _Floats
-    angles_rad: _Floats
-    camera: _Ints
-    sigma_position_m: _Floats
-    sigma_angles_rad: _Floats
+    image: Ids
+    strip: Ids
+    time_s: Floats
+    position_m: Floats
+    angles_rad: Floats
+    camera: Ints
+    sigma_position_m: Floats
+    sigma_angles_rad: Floats
     system: AngleSystem = "omega-phi-kappa"
 
     def __len__(self) -> int:
         return len(self.image)
 
     @property
-    def ground_from_image(self) -> _Floats:
+    def ground_from_image(self) -> Floats:
         """(n, 3, 3) rotations."""
         return rotation_from_angles(self.angles_rad, self.system)
 
@@ -64,7 +60,7 @@ class Orientations:
         """Ids of the strips in order of flight."""
         return tuple(dict.fromkeys(self.strip))
 
-    def with_angles(self, angles_rad: _Floats) -> Self:
+    def with_angles(self, angles_rad: Floats) -> Self:
         """The same images turned otherwise; angles_rad (n, 3)."""
         return replace(self, angles_rad=angles_rad)
 
@@ -83,15 +79,15 @@ class TiePoints:
         (m, 2) ideal image coordinates: x right, y up, from the principal point, no distortion.
     """
 
-    point_id: _Ids
-    point: _Ints
-    image: _Ints
-    xy_px: _Floats
+    point_id: Ids
+    point: Ints
+    image: Ints
+    xy_px: Floats
 
     def __len__(self) -> int:
         return len(self.point)
 
-    def subset(self, keep: NDArray[np.bool_]) -> Self:
+    def subset(self, keep: Bools) -> Self:
         """The measurements where `keep` (m,) is true; the points keep their numbers."""
         return replace(self, point=self.point[keep], image=self.image[keep], xy_px=self.xy_px[keep])
 
@@ -112,11 +108,11 @@ class GroundPoints:
         (g,) survey standard deviations, NaN where not stated.
     """
 
-    point: _Ids
-    position_m: _Floats
-    is_check: NDArray[np.bool_]
-    sigma_xy_m: _Floats
-    sigma_z_m: _Floats
+    point: Ids
+    position_m: Floats
+    is_check: Bools
+    sigma_xy_m: Floats
+    sigma_z_m: Floats
 
     def __len__(self) -> int:
         return len(self.point)
@@ -146,7 +142,7 @@ class OrientationTable:
     """
 
     table: pd.DataFrame
-    row: _Ints
+    row: Ints
     angle_columns: tuple[str, str, str]
 
 
@@ -174,7 +170,7 @@ class Block:
     warnings: tuple[str, ...] = ()
 
     @property
-    def check_points(self) -> NDArray[np.bool_]:
+    def check_points(self) -> Bools:
         """(p,) true for the tie points' `point_id` that are check points."""
         if self.ground_points is None:
             return np.zeros(len(self.tie_points.point_id), dtype=bool)
@@ -185,6 +181,6 @@ class Block:
             count=len(self.tie_points.point_id),
         )
 
-    def with_angles(self, angles_rad: _Floats) -> Self:
+    def with_angles(self, angles_rad: Floats) -> Self:
         """The same block with other POS angles (n, 3), radians, computing frame."""
         return replace(self, orientations=self.orientations.with_angles(angles_rad))

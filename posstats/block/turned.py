@@ -1,17 +1,15 @@
 """Orientations turned by angle errors."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.model import Orientations
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_vector
-
-_Floats = NDArray[np.float64]
 
 FULL_TURN = 2.0 * np.pi
 
 
-def corrected(orientations: Orientations, predicted_rad: _Floats, frame: str) -> Orientations:
+def corrected(orientations: Orientations, predicted_rad: Floats, frame: str) -> Orientations:
     """Orientations without the predicted errors.
 
     Parameters
@@ -36,7 +34,7 @@ def corrected(orientations: Orientations, predicted_rad: _Floats, frame: str) ->
     return orientations.with_angles(np.where(touched, _in_turn_of(angles, recorded), recorded))
 
 
-def _in_turn_of(angles_rad: _Floats, recorded_rad: _Floats) -> _Floats:
+def _in_turn_of(angles_rad: Floats, recorded_rad: Floats) -> Floats:
     """Angles in the turn that the recorded ones use: 0 to 360 degrees, else -180 to 180."""
     start = np.where(
         (np.nanmin(recorded_rad, 0) >= 0) & (np.nanmax(recorded_rad, 0) > np.pi), 0.0, -np.pi

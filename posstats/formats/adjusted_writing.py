@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.block.model import Block, Orientations
 from posstats.formats.block_writing import POSITION_DECIMALS, source_of
 from posstats.formats.convention import Convention
 from posstats.numerics.kernels.rotation import wrapped
-
-_Floats = NDArray[np.float64]
 
 POSITION_COLUMNS = ("x", "y", "z")
 _SIGMA_FORMAT = "{:.6g}"
@@ -21,7 +19,7 @@ _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 def write_adjusted(
-    block: Block, orientations: Orientations, pose_covariance: _Floats, path: str | PathLike[str]
+    block: Block, orientations: Orientations, pose_covariance: Floats, path: str | PathLike[str]
 ) -> None:
     """Write adjusted orientations with the columns, units and angle system of the input.
 
@@ -57,9 +55,7 @@ def write_adjusted(
     table.to_csv(path, index=False)
 
 
-def _fill(
-    table: pd.DataFrame, row: NDArray[np.intp], names: list[str], values: _Floats, style: str
-) -> None:
+def _fill(table: pd.DataFrame, row: Ints, names: list[str], values: Floats, style: str) -> None:
     """Write numbers (n, 3) as text into three columns."""
     for axis, name in enumerate(names):
         text = np.empty(len(table), dtype=object)
@@ -67,16 +63,16 @@ def _fill(
         table[name] = text
 
 
-def _turned(covariance: _Floats, axes: _Floats) -> _Floats:
+def _turned(covariance: Floats, axes: Floats) -> Floats:
     """Covariances (n, 3, 3) along the columns of axes (n, 3, 3)."""
-    along: _Floats = np.swapaxes(axes, -1, -2) @ covariance @ axes
+    along: Floats = np.swapaxes(axes, -1, -2) @ covariance @ axes
     return along
 
 
 def write_points(
     block: Block,
-    position_m: _Floats,
-    covariance_m2: _Floats,
+    position_m: Floats,
+    covariance_m2: Floats,
     columns: Mapping[str, Any],
     path: str | PathLike[str],
 ) -> None:

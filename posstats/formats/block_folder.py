@@ -9,8 +9,8 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
 from posstats.errors import BlockFormatError, GeometryError
@@ -28,8 +28,6 @@ from posstats.formats.orientation_files import (
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
 from posstats.formats.text_table import Table, read_bytes, read_table, sha256
 from posstats.formats.toml_section import FILE
-
-_Floats = NDArray[np.float64]
 
 __all__ = ["read_block", "write_block", "write_orientations"]
 
@@ -145,7 +143,7 @@ def _block(
 
 
 def _frame(
-    folder: Path, settings: BlockSettings, position_crs: _Floats, findings: list[str]
+    folder: Path, settings: BlockSettings, position_crs: Floats, findings: list[str]
 ) -> GroundFrame | None:
     """The block's ground frame; None, with a finding, if the crs does not fit the positions."""
     if settings.crs is None or not settings.tangent:

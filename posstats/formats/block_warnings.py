@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, stereo_models
 from posstats.block.model import Block
 from posstats.formats.block_toml import BlockSettings
@@ -46,7 +46,7 @@ def settings_warnings(settings: BlockSettings) -> list[str]:
     return warnings
 
 
-def time_warnings(time_in_file_order_s: NDArray[np.float64], images: Sequence[str]) -> list[str]:
+def time_warnings(time_in_file_order_s: Floats, images: Sequence[str]) -> list[str]:
     """A sentence on rows that are earlier than the row before; images in file order."""
     back = np.flatnonzero(np.diff(time_in_file_order_s) < 0.0) + 1
     if len(back) == 0:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.camera import Camera
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block, GroundPoints, Orientations, OrientationTable
@@ -24,8 +24,6 @@ from posstats.formats.convention import Convention
 from posstats.formats.toml_section import FILE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
 
-_Floats = NDArray[np.float64]
-
 # Decimals that lose nothing: 0.1 um on the ground, 1e-8 px, 1e-14 rad.
 POSITION_DECIMALS = 7
 _IMAGE_DECIMALS = 8
@@ -33,7 +31,7 @@ ANGLE_DECIMALS = {"deg": 12, "gon": 12, "rad": 14}
 _TABLES = ("orientations", "tie_points", "ground_points", "adjusted")
 
 
-def write_orientations(block: Block, angles_rad: _Floats, path: str | PathLike[str]) -> None:
+def write_orientations(block: Block, angles_rad: Floats, path: str | PathLike[str]) -> None:
     """Write orientations.csv of a block with other angles, to be read with the same block.toml.
 
     Columns, unit, angle system and order of rows are those of the input; everything but the angles
@@ -134,7 +132,7 @@ def _write(columns: Mapping[str, Any], path: Path) -> None:
     pd.DataFrame(columns).to_csv(path, index=False)
 
 
-def _pose_columns(block: Block, orientations: Orientations) -> dict[str, _Floats]:
+def _pose_columns(block: Block, orientations: Orientations) -> dict[str, Floats]:
     position = np.round(block.frame.to_crs(orientations.position_m), POSITION_DECIMALS)
     angles = np.full_like(position, np.nan)
     known = np.isfinite(position).all(axis=1)

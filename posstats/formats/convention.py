@@ -15,8 +15,8 @@ and the [pos] section:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.frames import GroundFrame
 from posstats.formats.block_toml import RADIANS_PER_UNIT, BlockSettings, FileAngleSystem
 from posstats.formats.navigation import (
@@ -31,8 +31,6 @@ from posstats.numerics.kernels.rotation import (
     rotation_derivatives,
     rotation_from_angles,
 )
-
-_Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class Convention:
         """Angle system of the computation."""
         return "phi-omega-kappa" if self.angles == "phi-omega-kappa" else "omega-phi-kappa"
 
-    def ground_from_image(self, position_crs: _Floats, file_angles: _Floats) -> _Floats:
+    def ground_from_image(self, position_crs: Floats, file_angles: Floats) -> Floats:
         """Camera rotations (n, 3, 3) into the computing frame.
 
         Parameters
@@ -103,11 +101,11 @@ class Convention:
             grid = rotation_from_angles(angles, self.angles)
         return self.frame.computing_from_crs_axes(position_crs) @ grid @ self._imu_from_camera.T
 
-    def computing_angles(self, ground_from_image: _Floats) -> _Floats:
+    def computing_angles(self, ground_from_image: Floats) -> Floats:
         """Angles (n, 3), rad, of the computation's system."""
         return angles_from_rotation(ground_from_image, self.system)
 
-    def file_angles(self, position_crs: _Floats, ground_from_image: _Floats) -> _Floats:
+    def file_angles(self, position_crs: Floats, ground_from_image: Floats) -> Floats:
         """Angles (n, 3) of the file, in its unit, of camera rotations; inverse of the above."""
         axes = self.frame.computing_from_crs_axes(position_crs)
         grid = np.swapaxes(axes, -1, -2) @ ground_from_image @ self._imu_from_camera
@@ -118,13 +116,13 @@ class Convention:
             angles = angles_from_rotation(grid, self.angles)
         return angles / self.unit_rad
 
-    def projection_centre(self, position_crs: _Floats, ground_from_image: _Floats) -> _Floats:
+    def projection_centre(self, position_crs: Floats, ground_from_image: Floats) -> Floats:
         """Projection centres (n, 3) in the computing frame: X_S = X - R lever."""
         offset = ground_from_image @ np.array(self.lever_arm_m)
-        centre: _Floats = self.frame.to_computing(position_crs) - offset
+        centre: Floats = self.frame.to_computing(position_crs) - offset
         return centre
 
-    def sigma_angles_rad(self, file_sigmas: _Floats, file_angles: _Floats) -> _Floats:
+    def sigma_angles_rad(self, file_sigmas: Floats, file_angles: Floats) -> Floats:
         """Standard deviations (n, 3) of omega, phi, kappa from those of the file's angles.
 
         Those of roll, pitch, heading are propagated as uncorrelated; omega, phi, kappa keep
@@ -140,12 +138,12 @@ class Convention:
             _rotation_vectors(opk, self.system),
             navigation_rotation_vectors(angles, self.mounting_rad),
         )
-        propagated: _Floats = np.sqrt((jacobian**2 @ sigmas[..., None] ** 2)[..., 0])
+        propagated: Floats = np.sqrt((jacobian**2 @ sigmas[..., None] ** 2)[..., 0])
         return propagated
 
     def file_angle_sigmas(
-        self, position_crs: _Floats, ground_from_image: _Floats, rotation_covariance: _Floats
-    ) -> _Floats:
+        self, position_crs: Floats, ground_from_image: Floats, rotation_covariance: Floats
+    ) -> Floats:
         """Standard deviations (n, 3) of the file's angles, in its unit.
 
         Parameters
@@ -163,20 +161,18 @@ class Convention:
         turned = np.swapaxes(ground_from_image @ self._imu_from_camera, -1, -2)
         by_rotation = np.linalg.solve(vectors, turned)
         covariance = by_rotation @ rotation_covariance @ np.swapaxes(by_rotation, -1, -2)
-        sigmas: _Floats = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)) / self.unit_rad
+        sigmas: Floats = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)) / self.unit_rad
         return sigmas
 
     @property
-    def _imu_from_camera(self) -> _Floats:
+    def _imu_from_camera(self) -> Floats:
         """R_B, the boresight matrix."""
         roll, pitch, yaw = (np.asarray(angle) for angle in self.boresight_rad)
-        boresight: _Floats = (
-            axis_rotation(0, pitch) @ axis_rotation(1, roll) @ axis_rotation(2, yaw)
-        )
+        boresight: Floats = axis_rotation(0, pitch) @ axis_rotation(1, roll) @ axis_rotation(2, yaw)
         return boresight
 
 
-def _rotation_vectors(angles_rad: _Floats, system: AngleSystem) -> _Floats:
+def _rotation_vectors(angles_rad: Floats, system: AngleSystem) -> Floats:
     """Rotation vectors (n, 3, 3), camera axes, of unit changes of the three angles (columns)."""
     image_from_ground = np.swapaxes(rotation_from_angles(angles_rad, system), -1, -2)
     skew = image_from_ground[..., None, :, :] @ rotation_derivatives(angles_rad, system)

@@ -11,11 +11,10 @@ top points forward, or `mounting_rad` clockwise from forward, seen from above.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from posstats.arrays import Floats
 from posstats.numerics.kernels.rotation import axis_rotation
-
-_Floats = NDArray[np.float64]
 
 # North, east, down <-> east, north, up; also body <-> camera with the image top forward.
 _SWAP = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
@@ -23,7 +22,7 @@ _SWAP = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 def rotation_from_navigation(
     angles_rad: ArrayLike, convergence_rad: ArrayLike = 0.0, mounting_rad: float = 0.0
-) -> _Floats:
+) -> Floats:
     """Rotation grid_from_image (n, 3, 3) of roll, pitch, heading.
 
     Parameters
@@ -47,7 +46,7 @@ def rotation_from_navigation(
 
 def navigation_from_rotation(
     grid_from_image: ArrayLike, convergence_rad: ArrayLike = 0.0, mounting_rad: float = 0.0
-) -> _Floats:
+) -> Floats:
     """Roll, pitch, heading (n, 3), rad, of rotations (n, 3, 3); heading in [0, 2 pi).
 
     Inverse of `rotation_from_navigation`; pitch is in [-pi/2, pi/2].
@@ -60,7 +59,7 @@ def navigation_from_rotation(
     return np.stack([roll, pitch, heading], axis=-1)
 
 
-def navigation_rotation_vectors(angles_rad: ArrayLike, mounting_rad: float = 0.0) -> _Floats:
+def navigation_rotation_vectors(angles_rad: ArrayLike, mounting_rad: float = 0.0) -> Floats:
     """Rotation vectors (n, 3, 3), camera axes, of unit changes of roll, pitch, heading (columns).
 
     A change d of the angles turns the camera by R exp([W d]x), W the returned matrix.
@@ -73,10 +72,10 @@ def navigation_rotation_vectors(angles_rad: ArrayLike, mounting_rad: float = 0.0
     vectors[..., 0, 0] = 1.0
     vectors[..., :, 1] = np.swapaxes(axis_rotation(0, angles[..., 0]), -1, -2)[..., :, 1]
     vectors[..., :, 2] = body_from_level[..., :, 2]
-    in_camera: _Floats = _body_from_camera(mounting_rad).T @ vectors
+    in_camera: Floats = _body_from_camera(mounting_rad).T @ vectors
     return in_camera
 
 
-def _body_from_camera(mounting_rad: float) -> _Floats:
-    rotation: _Floats = axis_rotation(2, np.asarray(mounting_rad)) @ _SWAP
+def _body_from_camera(mounting_rad: float) -> Floats:
+    rotation: Floats = axis_rotation(2, np.asarray(mounting_rad)) @ _SWAP
     return rotation

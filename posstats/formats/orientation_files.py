@@ -5,17 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ids, Ints
 from posstats.block.model import BLOCK_SCOPE, Orientations, OrientationTable
 from posstats.formats.block_toml import BlockSettings
 from posstats.formats.convention import Convention
 from posstats.formats.text_table import Table
 from posstats.formats.times import read_times
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 POSITION_COLUMNS = ("x", "y", "z")
 LARGEST_M = 1e9
@@ -28,15 +24,15 @@ class PosRows:
     """The rows of orientations.csv, checked, sorted by time (ties by image id), in file units."""
 
     table: Table
-    row: _Ints
-    image: _Ids
-    strip: _Ids
-    time_s: _Floats
-    position_crs: _Floats
-    file_angles: _Floats
-    camera: _Ints
-    file_sigma_position: _Floats
-    file_sigma_angles: _Floats
+    row: Ints
+    image: Ids
+    strip: Ids
+    time_s: Floats
+    position_crs: Floats
+    file_angles: Floats
+    camera: Ints
+    file_sigma_position: Floats
+    file_sigma_angles: Floats
 
 
 def read_pos_rows(table: Table, settings: BlockSettings, findings: list[str]) -> PosRows | None:
@@ -125,7 +121,7 @@ def read_adjusted(
     )
 
 
-def unique_images(table: Table, findings: list[str]) -> _Ids:
+def unique_images(table: Table, findings: list[str]) -> Ids:
     """Image ids (n,), a finding for each that stands twice."""
     image = np.array(table.ids("image", findings).to_pylist(), dtype=object)
     first: dict[str, int] = {}
@@ -139,7 +135,7 @@ def unique_images(table: Table, findings: list[str]) -> _Ids:
     return image
 
 
-def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> _Floats:
+def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> Floats:
     """Angles (n, 3) in the file's unit."""
     angles = _columns(table, settings.angle_columns, _LARGEST_ANGLE, findings)
     if settings.angle_unit == "rad":
@@ -151,16 +147,16 @@ def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> _
     return angles
 
 
-def read_positions(table: Table, findings: list[str]) -> _Floats:
+def read_positions(table: Table, findings: list[str]) -> Floats:
     """Positions x, y, z (n, 3) as they stand."""
     return _columns(table, POSITION_COLUMNS, LARGEST_M, findings)
 
 
-def _columns(table: Table, names: Sequence[str], largest: float, findings: list[str]) -> _Floats:
+def _columns(table: Table, names: Sequence[str], largest: float, findings: list[str]) -> Floats:
     return np.column_stack([table.numbers(name, findings, largest=largest) for name in names])
 
 
-def _strips(table: Table, findings: list[str]) -> _Ids:
+def _strips(table: Table, findings: list[str]) -> Ids:
     """Strip ids (n,), a finding for each that results could not tell from the whole block."""
     strip = np.array(table.ids("strip", findings).to_pylist(), dtype=object)
     findings += [
@@ -171,7 +167,7 @@ def _strips(table: Table, findings: list[str]) -> _Ids:
     return strip
 
 
-def _sigmas(table: Table, name: str, findings: list[str]) -> _Floats:
+def _sigmas(table: Table, name: str, findings: list[str]) -> Floats:
     """Standard deviations (n,), NaN where they are not given."""
     if name not in table.columns:
         return np.full(len(table), np.nan)
@@ -183,7 +179,7 @@ def _sigmas(table: Table, name: str, findings: list[str]) -> _Floats:
     return sigmas
 
 
-def _camera_numbers(table: Table, settings: BlockSettings, findings: list[str]) -> _Ints:
+def _camera_numbers(table: Table, settings: BlockSettings, findings: list[str]) -> Ints:
     """Index (n,) into the cameras, -1 with a finding where there is no such camera."""
     if "camera" not in table.columns and len(settings.cameras) == 1:
         return np.zeros(len(table), dtype=np.intp)

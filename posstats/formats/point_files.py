@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ids, Ints
 from posstats.block.camera import Camera
 from posstats.block.frames import GroundFrame
 from posstats.block.model import GroundPoints, TiePoints
 from posstats.errors import GeometryError
 from posstats.formats.orientation_files import LARGEST_M, read_positions
 from posstats.formats.text_table import Table
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 FORMAT_MARGIN = 0.05
 ROLES = ("control", "check")
@@ -26,7 +23,7 @@ ROLES = ("control", "check")
 def read_tie_points(
     table: Table,
     images: Sequence[str],
-    camera_of_image: _Ints,
+    camera_of_image: Ints,
     cameras: Sequence[Camera],
     unit: str,
     findings: list[str],
@@ -63,7 +60,7 @@ def read_tie_points(
     return TiePoints(point_id, point[order], image[order], xy_px[order])
 
 
-def ideal_coordinates(xy: _Floats, camera: _Ints, cameras: Sequence[Camera], unit: str) -> _Floats:
+def ideal_coordinates(xy: Floats, camera: Ints, cameras: Sequence[Camera], unit: str) -> Floats:
     """Ideal (m, 2) image coordinates, px, of file coordinates (m, 2) in px or mm."""
     ideal = np.empty_like(xy)
     for number, interior in enumerate(cameras):
@@ -72,7 +69,7 @@ def ideal_coordinates(xy: _Floats, camera: _Ints, cameras: Sequence[Camera], uni
     return ideal
 
 
-def _column_row(xy: _Floats, camera: Camera, unit: str) -> _Floats:
+def _column_row(xy: Floats, camera: Camera, unit: str) -> Floats:
     """Measured column, row, px."""
     if unit == "px":
         return xy
@@ -115,10 +112,10 @@ def read_ground_points(
 
 def refuse_outside_crs(
     table: Table,
-    position_crs: _Floats,
+    position_crs: Floats,
     frame: GroundFrame,
     findings: list[str],
-    row_of_position: _Ints | None = None,
+    row_of_position: Ints | None = None,
 ) -> None:
     """A finding for every position that the crs (or the geoid grid) does not cover."""
     given = np.isfinite(position_crs).all(axis=1)
@@ -131,7 +128,7 @@ def refuse_outside_crs(
     ]
 
 
-def _survey_sigma(table: Table, name: str, findings: list[str]) -> _Floats:
+def _survey_sigma(table: Table, name: str, findings: list[str]) -> Floats:
     if name not in table.columns:
         return np.full(len(table), np.nan)
     sigma = table.numbers(name, findings, optional=True, largest=LARGEST_M)
@@ -142,7 +139,7 @@ def _survey_sigma(table: Table, name: str, findings: list[str]) -> _Floats:
     return sigma
 
 
-def _sorted_ids(ids: Any) -> tuple[NDArray[np.object_], _Ints]:
+def _sorted_ids(ids: Any) -> tuple[Ids, Ints]:
     """Distinct ids in order (p,), and the number of each row's id (m,)."""
     coded = pc.dictionary_encode(ids)
     order = pc.sort_indices(coded.dictionary).to_numpy()
@@ -152,7 +149,7 @@ def _sorted_ids(ids: Any) -> tuple[NDArray[np.object_], _Ints]:
     return np.asarray(sorted_ids, dtype=object), number[coded.indices.to_numpy()]
 
 
-def _image_numbers(table: Table, images: Sequence[str], findings: list[str]) -> _Ints:
+def _image_numbers(table: Table, images: Sequence[str], findings: list[str]) -> Ints:
     """Index (m,) into `images`, -1 with a finding where there is no such image."""
     ids = table.ids("image", findings)
     found = pc.index_in(ids, value_set=pa.array(list(images), pa.string()))
@@ -168,8 +165,8 @@ def _image_numbers(table: Table, images: Sequence[str], findings: list[str]) -> 
 
 def _refuse_outside(
     table: Table,
-    xy: _Floats,
-    camera: _Ints,
+    xy: Floats,
+    camera: Ints,
     cameras: Sequence[Camera],
     unit: str,
     findings: list[str],
@@ -190,11 +187,11 @@ def _refuse_outside(
 
 def _refuse_repeated(
     table: Table,
-    point_id: NDArray[np.object_],
-    point: _Ints,
+    point_id: Ids,
+    point: Ints,
     images: Sequence[str],
-    image: _Ints,
-    order: _Ints,
+    image: Ints,
+    order: Ints,
     findings: list[str],
 ) -> None:
     """Findings for points measured twice in one image; arguments sorted by point and image."""

@@ -19,9 +19,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv
 import pyarrow.parquet
-from numpy.typing import NDArray
 
-_Floats = NDArray[np.float64]
+from posstats.arrays import Floats, Ints
+
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _CONTROL_CHARACTERS = r"[\x00-\x08\x0B\x0C\x0E-\x1F\x7F]"  # no XML or HTML can hold them
 _SHOWN_TEXT = 60
@@ -101,7 +101,7 @@ class Table:
         optional: bool = False,
         largest: float = np.inf,
         hint: str = "",
-    ) -> _Floats:
+    ) -> Floats:
         """(n,) finite numbers of a column; NaN, with a finding, where there is none.
 
         `optional` lets empty cells and NaN pass without a finding; numbers beyond `largest` in
@@ -129,7 +129,7 @@ class Table:
         return values
 
     @cached_property
-    def _lines(self) -> NDArray[np.intp]:
+    def _lines(self) -> Ints:
         """(n,) line of the file at which each row starts."""
         starts = [line for line, _ in _records(self.content or "")]
         return np.array(starts[1:], dtype=np.intp)
@@ -297,7 +297,7 @@ def _text(values: Any, numbers: bool = False) -> Any:
     return None
 
 
-def _parsed(values: Any) -> _Floats:
+def _parsed(values: Any) -> Floats:
     """Numbers of an Arrow array, NaN where there is none."""
     if pa.types.is_dictionary(values.type):
         values = values.dictionary_decode()

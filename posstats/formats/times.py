@@ -3,11 +3,9 @@
 from datetime import UTC, datetime
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.formats.text_table import Table
-
-_Floats = NDArray[np.float64]
 
 TIME_COLUMNS = ("time_s", "time_gps_s", "time_utc")
 WEEK_S = 604_800.0
@@ -15,7 +13,7 @@ LARGEST_S = 1e11
 """Seconds of no known origin: 3000 years; time stamps in milliseconds since 1970 lie beyond."""
 
 
-def read_times(table: Table, findings: list[str]) -> _Floats:
+def read_times(table: Table, findings: list[str]) -> Floats:
     """Exposure times (n,), seconds, of the one time column; NaN with a finding where there is none.
 
     UTC is counted in seconds from midnight before the first exposure, which keeps fractions of
@@ -42,7 +40,7 @@ def read_times(table: Table, findings: list[str]) -> _Floats:
     return seconds
 
 
-def continuous_gps_seconds(seconds_of_week: _Floats) -> _Floats:
+def continuous_gps_seconds(seconds_of_week: Floats) -> Floats:
     """GPS seconds of week (n,) counted on over the end of the week.
 
     In rows of flight order a step back of more than half a week is a new week. In rows of another
@@ -61,7 +59,7 @@ def continuous_gps_seconds(seconds_of_week: _Floats) -> _Floats:
     return seconds_of_week + np.where(seconds_of_week <= ascending[widest], WEEK_S, 0.0)
 
 
-def _utc_seconds(table: Table, findings: list[str]) -> _Floats:
+def _utc_seconds(table: Table, findings: list[str]) -> Floats:
     moments = []
     for row, text in enumerate(table.text("time_utc")):
         moment = _moment(text)

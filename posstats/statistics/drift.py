@@ -8,17 +8,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
+from posstats.arrays import Floats, Ids
 from posstats.errors import PosstatsError
 from posstats.statistics.linear_model import (
     LinearFit,
     generalised_least_squares,
     ordinary_least_squares,
 )
-
-_Floats = NDArray[np.float64]
 
 MIN_LINE_POINTS = 3
 MIN_CONSTANT_POINTS = 2
@@ -80,10 +79,10 @@ class DriftFit:
     n_time_clusters: int
     white_noise_sigma: float | None
     strip_effect_sigma: float | None
-    residuals: _Floats
+    residuals: Floats
     time_reference_s: float
     value_at_reference: float
-    covariance: _Floats
+    covariance: Floats
 
     def conf_int(self, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of the slope, rad/s."""
@@ -92,7 +91,7 @@ class DriftFit:
         reach = float(stats.t.ppf(0.5 + 0.5 * level, self.df_resid)) * self.slope_se
         return self.slope - reach, self.slope + reach
 
-    def predict(self, time_s: ArrayLike) -> tuple[_Floats, _Floats]:
+    def predict(self, time_s: ArrayLike) -> tuple[Floats, Floats]:
         """The line and its standard error at times (m,), rad."""
         since = np.asarray(time_s, dtype=float) - self.time_reference_s
         (value, cross), (_, slope) = self.covariance
@@ -104,10 +103,10 @@ class DriftFit:
         value, se = self.predict(time_s)
         return float(value), float(se)
 
-    def coefficient_covariance(self, time_s: float) -> _Floats:
+    def coefficient_covariance(self, time_s: float) -> Floats:
         """Covariance (2, 2) of (intercept at `time_s`, slope): rad^2, rad^2/s, rad^2/s^2."""
         move = np.array([[1.0, time_s - self.time_reference_s], [0.0, 1.0]])
-        moved: _Floats = move @ self.covariance @ move.T
+        moved: Floats = move @ self.covariance @ move.T
         return moved
 
 
@@ -127,7 +126,7 @@ def fit_drift(
     error_rad: ArrayLike,
     covariance: ArrayLike | None = None,
     *,
-    strip: Sequence[object] | NDArray[np.object_] | None = None,
+    strip: Sequence[object] | Ids | None = None,
 ) -> DriftFit:
     """Fit a straight line to angle errors.
 
@@ -167,7 +166,7 @@ def fit_constant(
     error_rad: ArrayLike,
     covariance: ArrayLike | None = None,
     *,
-    strip: Sequence[object] | NDArray[np.object_] | None = None,
+    strip: Sequence[object] | Ids | None = None,
 ) -> ConstantFit:
     """Fit a constant to angle errors (n,), n >= 2; arguments and errors as in `fit_drift`."""
     _, error = _paired(error_rad, error_rad, MIN_CONSTANT_POINTS)
@@ -191,7 +190,7 @@ def time_clusters(time_s: ArrayLike) -> int:
     return 1 + int(np.count_nonzero(intervals > TURN_GAPS * np.median(intervals)))
 
 
-def _paired(time_s: ArrayLike, error_rad: ArrayLike, n_min: int) -> tuple[_Floats, _Floats]:
+def _paired(time_s: ArrayLike, error_rad: ArrayLike, n_min: int) -> tuple[Floats, Floats]:
     try:
         time, error = np.asarray(time_s, dtype=float), np.asarray(error_rad, dtype=float)
     except (TypeError, ValueError) as problem:
@@ -209,12 +208,12 @@ def _paired(time_s: ArrayLike, error_rad: ArrayLike, n_min: int) -> tuple[_Float
 
 
 def _fitted(
-    error: _Floats,
+    error: Floats,
     offset: float,
-    design: _Floats,
-    coefficient_units: _Floats,
+    design: Floats,
+    coefficient_units: Floats,
     covariance: ArrayLike | None,
-    strip: Sequence[object] | NDArray[np.object_] | None,
+    strip: Sequence[object] | Ids | None,
 ) -> LinearFit:
     """Fit error - offset on `design`, scaled to order 1; coefficients come back in radians."""
     y = error - offset
@@ -234,7 +233,7 @@ def _fitted(
     return fit.rescaled(scale, coefficient_units)
 
 
-def _drift_fit(fit: LinearFit, time: _Floats, error: _Floats, reference: int) -> DriftFit:
+def _drift_fit(fit: LinearFit, time: Floats, error: Floats, reference: int) -> DriftFit:
     slope, slope_se = float(fit.coefficients[1]), float(np.sqrt(fit.covariance[1, 1]))
     df = float(fit.df[1])
     f_statistic: float | None
@@ -272,7 +271,7 @@ def _explained(f_statistic: float, fit: LinearFit, n: int) -> float:
     return f_statistic / (f_statistic + unexplained)
 
 
-def _checked_covariance(covariance: ArrayLike, n: int) -> _Floats:
+def _checked_covariance(covariance: ArrayLike, n: int) -> Floats:
     try:
         known = np.asarray(covariance, dtype=float)
     except (TypeError, ValueError) as problem:
@@ -284,13 +283,13 @@ def _checked_covariance(covariance: ArrayLike, n: int) -> _Floats:
     size = np.abs(known).max()
     if np.abs(known - known.T).max() > ROUNDING * size:
         raise FitError("the covariance is not symmetric")
-    symmetric: _Floats = 0.5 * (known + known.T)
+    symmetric: Floats = 0.5 * (known + known.T)
     if size > 0.0 and np.linalg.eigvalsh(symmetric / size)[0] < -ROUNDING:
         raise FitError("the covariance is not positive semidefinite")
     return symmetric
 
 
-def _strip_matrix(strip: Sequence[object] | NDArray[np.object_] | None, n: int) -> _Floats | None:
+def _strip_matrix(strip: Sequence[object] | Ids | None, n: int) -> Floats | None:
     """Z (n, S); None where a strip effect means nothing: one strip, or one image per strip."""
     if strip is None:
         return None
@@ -299,11 +298,11 @@ def _strip_matrix(strip: Sequence[object] | NDArray[np.object_] | None, n: int) 
     number = {label: k for k, label in enumerate(dict.fromkeys(strip))}
     if len(number) in (1, n):
         return None
-    matrix: _Floats = np.eye(len(number))[[number[label] for label in strip]]
+    matrix: Floats = np.eye(len(number))[[number[label] for label in strip]]
     return matrix
 
 
-def _exact(difference: _Floats, error: _Floats) -> bool:
+def _exact(difference: Floats, error: Floats) -> bool:
     """True where `difference` is nothing but the rounding of the errors."""
     return bool(np.abs(difference).max() <= 4.0 * np.finfo(float).eps * np.abs(error).max())
 

@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from statsmodels.regression.linear_model import OLS  # statsmodels.api imports much else
 
+from posstats.arrays import Floats
 from posstats.statistics.reml import variance_components
-
-_Floats = NDArray[np.float64]
 
 MAX_DF = 1e6
 """Degrees of freedom of a variance that is known; a number, as results know no infinity. The
@@ -39,15 +37,15 @@ class LinearFit:
         Estimated variance components, None where the model has none.
     """
 
-    coefficients: _Floats
-    covariance: _Floats
-    df: _Floats
-    residuals: _Floats
+    coefficients: Floats
+    covariance: Floats
+    df: Floats
+    residuals: Floats
     weighted_ss: float
     white_noise_variance: float | None = None
     strip_effect_variance: float | None = None
 
-    def rescaled(self, y_unit: float, coefficient_units: _Floats) -> Self:
+    def rescaled(self, y_unit: float, coefficient_units: Floats) -> Self:
         """The fit in other units: y times `y_unit`, coefficients times that and theirs (k,)."""
         units = y_unit * coefficient_units
         squared = [
@@ -64,7 +62,7 @@ class LinearFit:
         )
 
 
-def ordinary_least_squares(y: _Floats, design: _Floats) -> LinearFit:
+def ordinary_least_squares(y: Floats, design: Floats) -> LinearFit:
     """OLS of y (n,) on the columns of `design` (n, k), n > k."""
     fit = OLS(y, design).fit(method="qr")
     return LinearFit(
@@ -77,7 +75,7 @@ def ordinary_least_squares(y: _Floats, design: _Floats) -> LinearFit:
 
 
 def generalised_least_squares(
-    y: _Floats, design: _Floats, known: _Floats, strips: _Floats | None
+    y: Floats, design: Floats, known: Floats, strips: Floats | None
 ) -> LinearFit:
     """GLS with variance components by REML.
 
@@ -133,12 +131,12 @@ def generalised_least_squares(
 
 
 def _weight_uncertainty(
-    root: _Floats,
-    pulled: list[_Floats],
-    change: _Floats,
-    covariance: _Floats,
-    spread: _Floats,
-) -> _Floats:
+    root: Floats,
+    pulled: list[Floats],
+    change: Floats,
+    covariance: Floats,
+    spread: Floats,
+) -> Floats:
     """Kenward and Roger's Lambda (1997, eq. 5): what not knowing the weights costs.
 
     With `pulled` G_i V^-1 X Phi and `change` Phi X' V^-1 G_i V^-1 X Phi for the components i,
@@ -155,11 +153,11 @@ def _weight_uncertainty(
             for i in range(len(pulled))
         ]
     )
-    cost: _Floats = np.einsum("ij,ijkl->kl", spread, pairs)
+    cost: Floats = np.einsum("ij,ijkl->kl", spread, pairs)
     return cost
 
 
-def _satterthwaite(variance: _Floats, spread: _Floats) -> _Floats:
+def _satterthwaite(variance: Floats, spread: Floats) -> Floats:
     """2 v^2 / Var(v), at most `MAX_DF`."""
-    df: _Floats = 2.0 * variance**2 / np.maximum(spread, 2.0 * variance**2 / MAX_DF)
+    df: Floats = 2.0 * variance**2 / np.maximum(spread, 2.0 * variance**2 / MAX_DF)
     return df

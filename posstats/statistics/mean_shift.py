@@ -8,12 +8,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 
+from posstats.arrays import Floats
 from posstats.statistics import samples
-
-_Floats = NDArray[np.float64]
 
 LEAST_EIGENVALUE = 1e-10
 """Of a correlation matrix: components are collinear below. Rounding of the covariance leaves
@@ -91,14 +90,14 @@ def component_shifts(difference_m: ArrayLike) -> tuple[ComponentShift, ...]:
     return tuple(_component(column) for column in samples.checked_differences(difference_m).T)
 
 
-def _obstacle(values: _Floats) -> str | None:
+def _obstacle(values: Floats) -> str | None:
     n, k = values.shape
     if n <= k:
         return samples.TOO_FEW_POINTS if n else samples.NO_POINTS
     return None if samples.has_scatter(values).all() else samples.NO_SCATTER
 
 
-def _t2(values: _Floats) -> float | None:
+def _t2(values: Floats) -> float | None:
     """T2 through the correlation matrix; None where that is singular."""
     mean, covariance = samples.mean_and_covariance(values)
     sigma = np.sqrt(np.diag(covariance))
@@ -108,7 +107,7 @@ def _t2(values: _Floats) -> float | None:
     return float(len(values) * np.sum((axis.T @ (mean / sigma)) ** 2 / eigenvalue))
 
 
-def _component(column: _Floats) -> ComponentShift:
+def _component(column: Floats) -> ComponentShift:
     n = len(column)
     if n == 0:
         return ComponentShift(None, None, None, -1, None, samples.NO_POINTS)

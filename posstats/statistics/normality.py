@@ -7,13 +7,11 @@ intervals of the RMSE, factors such as 1.96 RMSE) are to be read with care.
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
+from posstats.arrays import Floats
 from posstats.statistics import samples
-
-_Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
 MAX_POINTS = 5000
@@ -51,7 +49,7 @@ def normality(difference_m: ArrayLike) -> tuple[NormalityTest, ...]:
     return tuple(_component(column) for column in samples.checked_differences(difference_m).T)
 
 
-def _component(column: _Floats) -> NormalityTest:
+def _component(column: Floats) -> NormalityTest:
     n = len(column)
     reason = _obstacle(column)
     if reason is not None:
@@ -62,7 +60,7 @@ def _component(column: _Floats) -> NormalityTest:
     return NormalityTest(min(float(result.statistic), 1.0), float(result.pvalue), n)
 
 
-def _obstacle(column: _Floats) -> str | None:
+def _obstacle(column: Floats) -> str | None:
     n = len(column)
     if n < MIN_POINTS:
         return samples.TOO_FEW_POINTS if n else samples.NO_POINTS

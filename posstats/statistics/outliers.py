@@ -28,12 +28,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 
+from posstats.arrays import Floats
 from posstats.statistics import samples
-
-_Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
 
@@ -80,7 +79,7 @@ def largest_residuals(difference_m: ArrayLike) -> tuple[LargestResidual, ...]:
     return tuple(found)
 
 
-def _component(column: _Floats) -> LargestResidual:
+def _component(column: Floats) -> LargestResidual:
     n = len(column)
     if n == 0:
         return LargestResidual(None, None, None, None, None, n, samples.NO_POINTS)

@@ -27,12 +27,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import optimize, special
 
+from posstats.arrays import Floats, Ints
 from posstats.statistics import samples
-
-_Floats = NDArray[np.float64]
 
 N_RESAMPLES = 20_000
 
@@ -185,7 +184,7 @@ def _check_sigma(sigma_m: float) -> None:
         raise samples.SampleError(f"a standard deviation is a length, not {sigma_m!r}")
 
 
-def _ordered(absolute_error_m: ArrayLike) -> _Floats:
+def _ordered(absolute_error_m: ArrayLike) -> Floats:
     values = samples.checked_differences(absolute_error_m)
     if values.shape[1] != 1 or (values < 0.0).any():
         raise samples.SampleError("absolute errors are one list of lengths, none negative")
@@ -199,15 +198,13 @@ def _place(n: int, share: float) -> tuple[int, int, float]:
     return j, min(j + 1, n), h - j
 
 
-def _between(
-    ordered: _Floats, index: int | NDArray[np.intp], following: int | NDArray[np.intp], part: float
-) -> _Floats:
+def _between(ordered: Floats, index: int | Ints, following: int | Ints, part: float) -> Floats:
     """x_(index) + part (x_(following) - x_(index)); indices 1..n."""
     first = ordered[np.asarray(index) - 1]
     return np.asarray(first + part * (ordered[np.asarray(following) - 1] - first))
 
 
-def _resampled(ordered: _Floats, share: float, rng: np.random.Generator) -> _Floats:
+def _resampled(ordered: Floats, share: float, rng: np.random.Generator) -> Floats:
     """(N_RESAMPLES,) sample percentiles of resamples: see the module's text."""
     n = len(ordered)
     j, following, part = _place(n, share)
@@ -222,7 +219,7 @@ def _resampled(ordered: _Floats, share: float, rng: np.random.Generator) -> _Flo
 
 
 def _order_statistics_interval(
-    ordered: _Floats, share: float, level: float
+    ordered: Floats, share: float, level: float
 ) -> tuple[float, float | None]:
     """Limits for any continuous distribution; no lower one: 0, no upper one: None.
 

@@ -9,9 +9,8 @@ K turned so that K'CK is diagonal, one evaluation costs O(n S^2) instead of O(n^
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-_Floats = NDArray[np.float64]
+from posstats.arrays import Floats
 
 MAX_ITERATIONS = 100
 MAX_HALVINGS = 30
@@ -41,17 +40,17 @@ class VarianceComponents:
         rows for components at zero, which are treated as absent.
     """
 
-    variance: _Floats
-    covariance: _Floats
+    variance: Floats
+    covariance: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class _Contrasts:
     """K'CK = diag(known), K'y, K'Z."""
 
-    known: _Floats
-    y: _Floats
-    strips: _Floats
+    known: Floats
+    y: Floats
+    strips: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +58,12 @@ class _Likelihood:
     """Restricted log-likelihood, its gradient and expected information in the two variances."""
 
     value: float
-    score: _Floats
-    information: _Floats
+    score: Floats
+    information: Floats
 
 
 def variance_components(
-    y: _Floats, design: _Floats, known: _Floats, strips: _Floats | None
+    y: Floats, design: Floats, known: Floats, strips: Floats | None
 ) -> VarianceComponents:
     """REML estimates by Fisher scoring from several starts.
 
@@ -89,9 +88,7 @@ def variance_components(
     return VarianceComponents(best, _sampling_covariance(contrasts, best))
 
 
-def _error_contrasts(
-    y: _Floats, design: _Floats, known: _Floats, strips: _Floats | None
-) -> _Contrasts:
+def _error_contrasts(y: Floats, design: Floats, known: Floats, strips: Floats | None) -> _Contrasts:
     complete, _ = np.linalg.qr(design, mode="complete")
     contrasts = complete[:, design.shape[1] :]
     eigenvalues, turn = np.linalg.eigh(contrasts.T @ known @ contrasts)
@@ -103,7 +100,7 @@ def _error_contrasts(
     )
 
 
-def _likelihood(contrasts: _Contrasts, variance: _Floats) -> _Likelihood:
+def _likelihood(contrasts: _Contrasts, variance: Floats) -> _Likelihood:
     """Log-likelihood and derivatives.
 
     With W the inverse of the diagonal part and W^1/2 U = Q S R' the strips' singular values,
@@ -142,7 +139,7 @@ def _likelihood(contrasts: _Contrasts, variance: _Floats) -> _Likelihood:
     )
 
 
-def _starts(contrasts: _Contrasts, *, with_strips: bool) -> list[_Floats]:
+def _starts(contrasts: _Contrasts, *, with_strips: bool) -> list[Floats]:
     """White noise alone; strip effect alone; both. Sizes by robust moments."""
     square = contrasts.y**2
     white = float(np.median(square)) or float(np.mean(square))
@@ -153,7 +150,7 @@ def _starts(contrasts: _Contrasts, *, with_strips: bool) -> list[_Floats]:
     return [np.array(start) for start in ((white, 0.0), (0.0, strip), (white / 2, strip / 2))]
 
 
-def _maximised(contrasts: _Contrasts, start: _Floats) -> tuple[_Floats, float]:
+def _maximised(contrasts: _Contrasts, start: Floats) -> tuple[Floats, float]:
     """Fisher scoring with step halving, over the components that the start has.
 
     A variance at zero is held there while its score is negative.
@@ -175,8 +172,8 @@ def _maximised(contrasts: _Contrasts, start: _Floats) -> tuple[_Floats, float]:
 
 
 def _uphill(
-    contrasts: _Contrasts, variance: _Floats, step: _Floats, value: float
-) -> tuple[_Floats, _Likelihood]:
+    contrasts: _Contrasts, variance: Floats, step: Floats, value: float
+) -> tuple[Floats, _Likelihood]:
     """The longest of step, step/2, step/4 ... that raises the likelihood above `value`."""
     for _ in range(MAX_HALVINGS):
         trial = np.maximum(variance + step, 0.0)
@@ -187,16 +184,16 @@ def _uphill(
     return trial, state
 
 
-def _solved(information: _Floats, right: _Floats) -> _Floats:
+def _solved(information: Floats, right: Floats) -> Floats:
     """Solution with unit diagonal; components that look alike share (pseudo-inverse)."""
     scale = np.diag(1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300)))
-    solution: _Floats = (
+    solution: Floats = (
         scale @ np.linalg.pinv(scale @ information @ scale, rcond=1e-10) @ scale @ right
     )
     return solution
 
 
-def _sampling_covariance(contrasts: _Contrasts, variance: _Floats) -> _Floats:
+def _sampling_covariance(contrasts: _Contrasts, variance: Floats) -> Floats:
     present = np.ix_(variance > 0.0, variance > 0.0)
     covariance = np.zeros((2, 2))
     information = _likelihood(contrasts, variance).information[present]

@@ -35,12 +35,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 
+from posstats.arrays import Floats
 from posstats.statistics import samples
-
-_Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
 """Fewer leave tr(S S) without an estimate."""
@@ -140,7 +139,7 @@ def n_to_decide(rmse: float, limit: float, df_per_point: float, level: float = 0
     return many
 
 
-def _degrees_of_freedom(values: _Floats, square: float, level: float) -> float:
+def _degrees_of_freedom(values: Floats, square: float, level: float) -> float:
     """Satterthwaite's degrees of freedom, widened: see the module's text.
 
     Parameters
@@ -162,7 +161,7 @@ def _degrees_of_freedom(values: _Floats, square: float, level: float) -> float:
     return max(n, 2.0 * n * square**2 / variance - 2.0) / widening**2
 
 
-def _variance_terms(values: _Floats) -> tuple[float, float]:
+def _variance_terms(values: Floats) -> tuple[float, float]:
     """Unbiased estimates of tr(S S) and m'S m, kept within what is possible."""
     n, k = values.shape
     f = n - 1

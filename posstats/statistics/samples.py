@@ -6,11 +6,10 @@ are errors.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from posstats.arrays import Bools, Floats
 from posstats.errors import PosstatsError
-
-_Floats = NDArray[np.float64]
 
 NO_POINTS = "no_points"
 TOO_FEW_POINTS = "too_few_points"
@@ -29,7 +28,7 @@ class SampleError(PosstatsError, ValueError):
     """Values that are no sample of differences, or a question outside its range."""
 
 
-def checked_differences(difference_m: ArrayLike) -> _Floats:
+def checked_differences(difference_m: ArrayLike) -> Floats:
     """(n, k) finite differences; a list (n,) is one component.
 
     Raises
@@ -58,20 +57,20 @@ def checked_level(level: float) -> float:
     return float(level)
 
 
-def power_of_two(values: _Floats) -> float:
+def power_of_two(values: Floats) -> float:
     """The power of two next above the largest of values: to divide by it costs no digits."""
     size = float(np.abs(values).max(initial=0.0))
     return float(np.ldexp(1.0, int(np.frexp(size)[1])))
 
 
-def has_scatter(values: _Floats) -> NDArray[np.bool_]:
+def has_scatter(values: Floats) -> Bools:
     """(k,) whether the values (n, k) of a component differ by more than rounding; n >= 1."""
     spread = values.max(axis=0) - values.min(axis=0)
-    scatter: NDArray[np.bool_] = spread > ROUNDING * np.abs(values).max(axis=0)
+    scatter: Bools = spread > ROUNDING * np.abs(values).max(axis=0)
     return scatter
 
 
-def mean_and_covariance(values: _Floats) -> tuple[_Floats, _Floats]:
+def mean_and_covariance(values: Floats) -> tuple[Floats, Floats]:
     """Mean (k,) and covariance (k, k), divisor n - 1, of values (n, k); n >= 2."""
     mean = values.mean(axis=0)
     deviation = values - mean

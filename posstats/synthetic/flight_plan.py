@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.numerics.kernels.rotation import rotation_from_angles
 from posstats.synthetic.scenario import Scenario
-
-_Floats = NDArray[np.float64]
-_Ids = NDArray[np.object_]
 
 _PARALLEL_DEG = 1e-6
 
@@ -34,16 +31,16 @@ class FlightPlan:
         (n,) flight direction, clockwise from grid north.
     """
 
-    image: _Ids
-    strip: _Ids
-    time_s: _Floats
-    planned_xy_m: _Floats
-    position_m: _Floats
-    map_from_image: _Floats
-    heading_rad: _Floats
+    image: Ids
+    strip: Ids
+    time_s: Floats
+    planned_xy_m: Floats
+    position_m: Floats
+    map_from_image: Floats
+    heading_rad: Floats
 
     @property
-    def _parallel_to_first(self) -> NDArray[np.bool_]:
+    def _parallel_to_first(self) -> Bools:
         return np.asarray(np.abs(np.sin(self.heading_rad - self.heading_rad[0])) < 1e-6)
 
     @property
@@ -51,7 +48,7 @@ class FlightPlan:
         """Number of strips parallel to the first, with it."""
         return len(set(self.strip[self._parallel_to_first]))
 
-    def rectangle(self, least_size_m: _Floats) -> tuple[_Floats, _Floats, _Floats]:
+    def rectangle(self, least_size_m: Floats) -> tuple[Floats, Floats, Floats]:
         """Rectangle over the planned exposures of the strips parallel to the first.
 
         Parameters
@@ -103,16 +100,16 @@ def fly(scenario: Scenario, rng: np.random.Generator) -> FlightPlan:
     )
 
 
-def _forward(heading_rad: _Floats) -> _Floats:
+def _forward(heading_rad: Floats) -> Floats:
     """Unit vectors (..., 2), east and north, of headings clockwise from north."""
     return np.stack([np.sin(heading_rad), np.cos(heading_rad)], axis=-1)
 
 
-def _right(heading_rad: _Floats) -> _Floats:
+def _right(heading_rad: Floats) -> Floats:
     return np.stack([np.cos(heading_rad), -np.sin(heading_rad)], axis=-1)
 
 
-def _strip_middles(headings_rad: _Floats, spacing_m: float) -> _Floats:
+def _strip_middles(headings_rad: Floats, spacing_m: float) -> Floats:
     """Middles (strips, 2) about the origin; parallel strips side by side, each axis centred."""
     axis = np.round(np.degrees(headings_rad) / _PARALLEL_DEG).astype(np.int64)
     axis %= round(180.0 / _PARALLEL_DEG)
@@ -126,35 +123,35 @@ def _strip_middles(headings_rad: _Floats, spacing_m: float) -> _Floats:
 
 
 def _times(
-    counts: NDArray[np.intp],
-    strip: NDArray[np.intp],
-    in_strip: NDArray[np.intp],
+    counts: Ints,
+    strip: Ints,
+    in_strip: Ints,
     base_m: float,
     scenario: Scenario,
-) -> _Floats:
+) -> Floats:
     """Exposure times (n,): constant speed in the strips, a turn between them."""
     flight = scenario.flight
     interval = base_m / flight.speed_m_per_s
     duration = (counts - 1) * interval + flight.turn_s
     begin = flight.start_time_s + np.cumsum(duration) - duration
-    time: _Floats = begin[strip] + in_strip * interval
+    time: Floats = begin[strip] + in_strip * interval
     return time
 
 
-def _attitudes(heading_rad: _Floats, tilt_rad: _Floats) -> _Floats:
+def _attitudes(heading_rad: Floats, tilt_rad: Floats) -> Floats:
     """Rotations (n, 3, 3) map_from_image: image y forward, turned by (n, 3) tilts."""
     angles = tilt_rad.copy()
     angles[:, 2] -= heading_rad
     return rotation_from_angles(angles, "omega-phi-kappa")
 
 
-def _strip_ids(strip: NDArray[np.intp]) -> _Ids:
+def _strip_ids(strip: Ints) -> Ids:
     """Numbers from 1, of equal length so that text order is order of flight."""
     digits = len(str(strip.max() + 1))
     return np.array([f"{s + 1:0{digits}d}" for s in strip], dtype=object)
 
 
-def _image_ids(strip: NDArray[np.intp], in_strip: NDArray[np.intp]) -> _Ids:
+def _image_ids(strip: Ints, in_strip: Ints) -> Ids:
     digits = len(str(in_strip.max() + 1))
     numbers = [f"{i + 1:0{digits}d}" for i in in_strip]
     return np.array(

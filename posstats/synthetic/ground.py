@@ -3,22 +3,19 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ids
 from posstats.block.frames import GroundFrame
 from posstats.errors import GeometryError
 from posstats.synthetic.flight_plan import FlightPlan, footprint_m
 from posstats.synthetic.scenario import PointSpec, Scenario
 from posstats.synthetic.streams import Streams
 
-_Floats = NDArray[np.float64]
-_Ids = NDArray[np.object_]
-
 _TERRAIN_WAVES = 24
 _MAX_TIE_POINTS = 5_000_000
 
 
-def to_computing(frame: GroundFrame, position_m: _Floats) -> _Floats:
+def to_computing(frame: GroundFrame, position_m: Floats) -> Floats:
     """Positions (n, 3) from map into computing coordinates, all of them inside the crs."""
     computing = frame.to_computing(position_m)
     if not np.isfinite(computing).all():
@@ -32,8 +29,8 @@ class Surface:
 
     mean_height_m: float
     amplitude_m: float
-    wave_number: _Floats  # (waves, 2), rad/m
-    phase_rad: _Floats  # (waves,)
+    wave_number: Floats  # (waves, 2), rad/m
+    phase_rad: Floats  # (waves,)
 
     @classmethod
     def random(cls, scenario: Scenario, rng: np.random.Generator) -> "Surface":
@@ -54,7 +51,7 @@ class Surface:
         """A height below all of the surface."""
         return self.mean_height_m - self.amplitude_m * len(self.phase_rad)
 
-    def points(self, xy_m: _Floats) -> _Floats:
+    def points(self, xy_m: Floats) -> Floats:
         """Points (n, 3) of the surface at (n, 2) map coordinates."""
         waves = xy_m @ self.wave_number.T
         waves += self.phase_rad
@@ -66,11 +63,11 @@ class Surface:
 class TruePoints:
     """True ground points of all kinds in the computing frame, sorted by id."""
 
-    id: _Ids
-    position_m: _Floats
-    kind: _Ids  # "check", "control", "tie"
-    image_sigma_px: _Floats
-    survey_sigma_m: _Floats
+    id: Ids
+    position_m: Floats
+    kind: Ids  # "check", "control", "tie"
+    image_sigma_px: Floats
+    survey_sigma_m: Floats
 
     def __len__(self) -> int:
         return len(self.id)
@@ -108,12 +105,12 @@ def true_points(
     )
 
 
-def _ids(letter: str, n: int) -> _Ids:
+def _ids(letter: str, n: int) -> Ids:
     digits = len(str(n))
     return np.array([f"{letter}{i:0{digits}d}" for i in range(1, n + 1)], dtype=object)
 
 
-def _tie_grid(scenario: Scenario, plan: FlightPlan, rng: np.random.Generator) -> _Floats:
+def _tie_grid(scenario: Scenario, plan: FlightPlan, rng: np.random.Generator) -> Floats:
     """Map coordinates (n, 2): one point at random in every cell of a grid under the block."""
     along, across = footprint_m(scenario)
     model_area = along * across * scenario.flight.forward_overlap
@@ -128,13 +125,13 @@ def _tie_grid(scenario: Scenario, plan: FlightPlan, rng: np.random.Generator) ->
         )
     columns, rows = np.ceil(size / cell).astype(int)
     index = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
-    grid: _Floats = low + cell * (index + rng.uniform(size=index.shape))
+    grid: Floats = low + cell * (index + rng.uniform(size=index.shape))
     return grid
 
 
 def _spread(
     spec: PointSpec, plan: FlightPlan, scenario: Scenario, rng: np.random.Generator
-) -> _Floats:
+) -> Floats:
     """Map coordinates (n, 2) of surveyed points over the projection centres' rectangle."""
     along, across = footprint_m(scenario)
     axes, low, high = plan.rectangle(least_size_m=0.5 * np.array([along, across]))
@@ -142,11 +139,11 @@ def _spread(
         share = rng.uniform(size=(spec.n, 2))
     else:
         share = _even_shares(spec, high - low, plan.n_parallel_strips)
-    spread: _Floats = (low + share * (high - low)) @ axes
+    spread: Floats = (low + share * (high - low)) @ axes
     return spread
 
 
-def _even_shares(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
+def _even_shares(spec: PointSpec, size_m: Floats, n_strips: int) -> Floats:
     """Even spread (n, 2) over a unit square that stands for a rectangle of `size_m`."""
     if spec.n == 0:
         return np.empty((0, 2))
@@ -158,7 +155,7 @@ def _even_shares(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
     )
 
 
-def _lines(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
+def _lines(spec: PointSpec, size_m: Floats, n_strips: int) -> Floats:
     """Places (lines,) across the flight of lines of points along it."""
     if spec.distribution == "side-overlap":
         overlaps = max(n_strips - 1, 1)
@@ -170,9 +167,9 @@ def _lines(spec: PointSpec, size_m: _Floats, n_strips: int) -> _Floats:
     return _edge_to_edge(min(max(2, square), spec.n // 2) if spec.n >= 4 else square)
 
 
-def _cell_centres(n: int) -> _Floats:
+def _cell_centres(n: int) -> Floats:
     return (np.arange(n) + 0.5) / n
 
 
-def _edge_to_edge(n: int) -> _Floats:
+def _edge_to_edge(n: int) -> Floats:
     return np.linspace(0.0, 1.0, n) if n > 1 else np.array([0.5])

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.block.camera import Camera
 from posstats.block.model import Orientations, TiePoints
 from posstats.errors import GeometryError
@@ -14,10 +14,6 @@ from posstats.synthetic.ground import Surface, TruePoints
 from posstats.synthetic.scenario import Scenario
 from posstats.synthetic.streams import Streams
 
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Bools = NDArray[np.bool_]
-
 _STEEPEST_RAY_RAD = np.radians(80.0)
 
 
@@ -25,12 +21,12 @@ _STEEPEST_RAY_RAD = np.radians(80.0)
 class Rays:
     """Which point lies in which image, and where: ideal x, y in px; sorted by point, image."""
 
-    point: _Ints
-    image: _Ints
-    xy_px: _Floats
+    point: Ints
+    image: Ints
+    xy_px: Floats
 
 
-def reach_m(camera: Camera, plan: FlightPlan, surface: Surface) -> _Floats:
+def reach_m(camera: Camera, plan: FlightPlan, surface: Surface) -> Floats:
     """Upper bound (n,) of the slant distance from an image to anything it shows."""
     rays = np.column_stack([_format_corners(camera), np.full(4, -camera.principal_distance_px)])
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
@@ -39,11 +35,11 @@ def reach_m(camera: Camera, plan: FlightPlan, surface: Surface) -> _Floats:
         raise GeometryError("the tilts turn image corners towards the horizon: lower tilt_rad")
     above = plan.position_m[:, 2] - surface.lowest_m
     # 2 % for the curvature and the scale of map grids.
-    reach: _Floats = 1.02 * above / cosine
+    reach: Floats = 1.02 * above / cosine
     return reach
 
 
-def imaged(points: TruePoints, truth: Orientations, camera: Camera, reach_m: _Floats) -> Rays:
+def imaged(points: TruePoints, truth: Orientations, camera: Camera, reach_m: Floats) -> Rays:
     """Points inside the image format; tie points in two images or more."""
     tree, rotation = cKDTree(points.position_m), truth.ground_from_image
     seen = []
@@ -62,7 +58,7 @@ def imaged(points: TruePoints, truth: Orientations, camera: Camera, reach_m: _Fl
     return Rays(point[order], image[order], xy[order])
 
 
-def _projected(vector: _Floats, camera: Camera) -> tuple[_Floats, _Bools]:
+def _projected(vector: Floats, camera: Camera) -> tuple[Floats, Bools]:
     """Ideal (m, 2) image coordinates, px, and (m,) whether they are inside the format.
 
     `vector` (m, 3) leads from the projection centre to the points, in the axes of the image.
@@ -76,12 +72,12 @@ def _projected(vector: _Floats, camera: Camera) -> tuple[_Floats, _Bools]:
     return xy, np.asarray(possible & _in_format(camera.measured_from_ideal(xy), camera).all(axis=1))
 
 
-def _in_format(measured_px: _Floats, camera: Camera) -> _Bools:
+def _in_format(measured_px: Floats, camera: Camera) -> Bools:
     """Whether columns and rows (m, 2) are inside the image, each for itself."""
     return (measured_px >= 0.0) & (measured_px <= [camera.width_px, camera.height_px])
 
 
-def _format_corners(camera: Camera) -> _Floats:
+def _format_corners(camera: Camera) -> Floats:
     """Ideal (4, 2) coordinates of the image's corners, px."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
     return camera.ideal_from_measured(corners * [camera.width_px, camera.height_px])
@@ -109,7 +105,7 @@ def measured(
 
 def _blunders(
     rays: Rays, points: TruePoints, camera: Camera, scenario: Scenario, rng: np.random.Generator
-) -> _Floats:
+) -> Floats:
     """Shifts (m, 2), px, of the tie-point measurements that are blunders, 0 elsewhere."""
     errors = scenario.errors
     chosen = (rng.uniform(size=len(rays.point)) < errors.blunder_share) & (

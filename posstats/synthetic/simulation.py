@@ -7,8 +7,8 @@ computing frame, and imaged there through the exact central projection; occlusio
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.block.frames import GroundFrame, require_map_grid
 from posstats.block.model import Accuracy, Block, GroundPoints, Orientations
 from posstats.formats.block_warnings import block_warnings
@@ -23,9 +23,6 @@ from posstats.synthetic.ground import Surface, TruePoints, to_computing, true_po
 from posstats.synthetic.images import imaged, measured, reach_m
 from posstats.synthetic.scenario import AngleError, Scenario
 from posstats.synthetic.streams import Streams, random_streams
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 
 def simulate(scenario: Scenario, seed: int | None = None) -> Block:
@@ -116,7 +113,7 @@ def _pos(scenario: Scenario, truth: Orientations, streams: Streams) -> Orientati
     return replace(truth, position_m=position, angles_rad=wrapped(angles))
 
 
-def _angle_errors(truth: Orientations, models: tuple[AngleError, ...], streams: Streams) -> _Floats:
+def _angle_errors(truth: Orientations, models: tuple[AngleError, ...], streams: Streams) -> Floats:
     """Errors (n, 3), rad: constant + drift (t - t first), the same of each strip, white noise."""
     strip = _strip_index(truth)
     n_strips = len(truth.strips)
@@ -137,28 +134,28 @@ def _angle_errors(truth: Orientations, models: tuple[AngleError, ...], streams: 
     )
 
 
-def _position_errors(scenario: Scenario, truth: Orientations, rng: np.random.Generator) -> _Floats:
+def _position_errors(scenario: Scenario, truth: Orientations, rng: np.random.Generator) -> Floats:
     """Errors (n, 3), m: shift and drift of each strip, and white noise."""
     model = scenario.errors.position
     strip, n_strips = _strip_index(truth), len(truth.strips)
     shift = rng.normal(size=(n_strips, 3))[strip]
     drift = rng.normal(size=(n_strips, 3))[strip] * _since_first_of_strip(truth)[:, None]
     white = rng.normal(size=(len(truth), 3))
-    total: _Floats = (
+    total: Floats = (
         model.strip_shift_m * shift + model.strip_drift_m_per_s * drift + model.noise_m * white
     )
     return total
 
 
-def _since_first_of_strip(truth: Orientations) -> _Floats:
+def _since_first_of_strip(truth: Orientations) -> Floats:
     """(n,) seconds since the first exposure of the image's strip."""
     strip = _strip_index(truth)
     first_s = np.array([truth.time_s[strip == s].min() for s in range(len(truth.strips))])
-    since_s: _Floats = truth.time_s - first_s[strip]
+    since_s: Floats = truth.time_s - first_s[strip]
     return since_s
 
 
-def _strip_index(truth: Orientations) -> _Ints:
+def _strip_index(truth: Orientations) -> Ints:
     number = {strip: i for i, strip in enumerate(truth.strips)}
     return np.array([number[strip] for strip in truth.strip], dtype=np.intp)
 

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from posstats.arrays import Floats
+
 from ..block import line_figures as figure_regression
 from ..block import plan_figures as figure_plan
 from ..block.bar_figures import Bars, bar_figure
@@ -16,7 +18,7 @@ from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import (
-    FloatArray,
+    Floats,
     PlanView,
     arrow_scale,
     difference_arrows,
@@ -207,7 +209,7 @@ def _share(axis: Axes, place: int, row: Row) -> None:
               mec="white", mew=0.6)  # fmt: skip
 
 
-def _differences(points: Sequence[Row]) -> FloatArray:
+def _differences(points: Sequence[Row]) -> Floats:
     known = [(p["dx_m"], p["dy_m"], p["dz_m"]) for p in points if p["status"] == "ok"]
     return np.array(known, dtype=float).reshape(-1, 3)
 
@@ -222,7 +224,7 @@ def _allowed_sigmas(acceptance: Mapping[str, Any]) -> list[float | None]:
 
 
 def _histogram(
-    words: Words, axis: Axes, values_m: FloatArray, sigma_m: float | None, unit: fmt.Unit
+    words: Words, axis: Axes, values_m: Floats, sigma_m: float | None, unit: fmt.Unit
 ) -> None:
     shown = values_m * unit.per_si
     reach = max(float(np.abs(shown).max()), 2.2 * (sigma_m or 0.0) * unit.per_si, 1e-9)

@@ -6,12 +6,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from posstats.arrays import Floats
+
 from ..block.plan_figures import difference_plan
 from ..block.view import Results, Row, rows, strips
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
-from ..figures.plan_view import FloatArray, PlanView, north_and_scale, polylines, view_of
+from ..figures.plan_view import Floats, PlanView, north_and_scale, polylines, view_of
 
 MAX_PLAN_IN = 3.4
 LEAST_RAYS = 5
@@ -114,7 +116,7 @@ def _residuals(camera: str, cells: Sequence[Row], number: int) -> Drawing:
     return style.finish(figure, f"residuals_{number}", "Image residuals over the format", caption)
 
 
-def _spacing(place: FloatArray) -> float:
+def _spacing(place: Floats) -> float:
     """Side of a cell."""
     steps = np.diff(np.unique(place[:, 0])) if len(np.unique(place[:, 0])) > 1 else [1000.0]
     return float(np.min(steps))

@@ -12,13 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
+from posstats.arrays import Floats
+
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
 from .view import Results, Row, angles, decided_by_strip, first, rows, setting
-
-FloatArray = npt.NDArray[np.float64]
-
 
 OLS_LABEL = "OLS line, 95 % band"
 GLS_LABEL = "GLS line, 95 % band"
@@ -36,11 +35,11 @@ class Line:
     covariance: float
     df_resid: float
 
-    def at(self, time_s: FloatArray) -> FloatArray:
+    def at(self, time_s: Floats) -> Floats:
         """Fitted error at times."""
         return self.intercept_rad + self.slope_rad_per_s * (time_s - self.origin_s)
 
-    def half_width(self, time_s: FloatArray) -> FloatArray:
+    def half_width(self, time_s: Floats) -> Floats:
         """Half of the 95 % confidence interval of the line at times."""
         dt = time_s - self.origin_s
         variance = self.intercept_se**2 + 2.0 * dt * self.covariance + (dt * self.slope_se) ** 2
@@ -90,9 +89,9 @@ class Panel:
 
     def _line(
         self,
-        time_s: FloatArray,
-        middle_rad: FloatArray,
-        half_rad: FloatArray,
+        time_s: Floats,
+        middle_rad: Floats,
+        half_rad: Floats,
         label: str,
         dash: Any,
         shade: float,

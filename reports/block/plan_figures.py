@@ -12,11 +12,13 @@ from matplotlib.colors import BoundaryNorm, Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
+from posstats.arrays import Floats
+
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import (
-    FloatArray,
+    Floats,
     PlanView,
     arrow_scale,
     difference_arrows,
@@ -27,7 +29,7 @@ from ..figures.plan_view import (
 )
 from .view import Results, Row, rows, strips
 
-Label = tuple[FloatArray, str]  # middle in points, text
+Label = tuple[Floats, str]  # middle in points, text
 
 CROWDED = 150  # images from which exposure stations are drawn smaller
 LABEL_LENGTH, LETTER_PT, LINE_PT = 11, 5.0, 10.0  # strip ids in the plan: letters, points
@@ -233,14 +235,14 @@ def _strip_labels(
         )
 
 
-def _free_offset(place: FloatArray, text: str, taken: Sequence[Label]) -> FloatArray:
+def _free_offset(place: Floats, text: str, taken: Sequence[Label]) -> Floats:
     """Offset of a label in points: against the flight if free there, else turned, then farther."""
     back = place[0] - place[-1]
     length = float(np.hypot(*back))
     back = back / length if length else np.array([0.0, 1.0])
     across = np.array([-back[1], back[0]])
     directions = (back, back + across, back - across, across, -across)
-    offsets: list[FloatArray] = [
+    offsets: list[Floats] = [
         reach * d / np.hypot(*d) for reach in (9.0, 18.0, 27.0) for d in directions
     ]
     for offset in offsets:
@@ -294,5 +296,5 @@ def _differences(
     scale_arrow(axis, view, scale, style.BLACK, row)
 
 
-def _columns(points: Sequence[Row], *names: str) -> FloatArray:
+def _columns(points: Sequence[Row], *names: str) -> Floats:
     return np.array([[math.nan if p[k] is None else p[k] for k in names] for p in points])

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, Transform, blended_transform_factory
 
+from posstats.arrays import Floats
+
 from ..block.view import Row
 from ..document import format as fmt
 from . import style
 
-FloatArray = npt.NDArray[np.float64]
 Point = Sequence[float]  # east and north in metres
 
 PAD = 0.07
@@ -51,12 +51,12 @@ class PlanView:
         """Coordinate of the left edge of the drawing."""
         return self.south if self.turned else self.west
 
-    def drawn(self, points: Iterable[Point]) -> FloatArray:
+    def drawn(self, points: Iterable[Point]) -> Floats:
         """Places (2, n) on the axes of points given as east, north."""
         east, north = np.array(list(points), dtype=float).reshape(-1, 2).T
         return np.array([north, east] if self.turned else [east, north])
 
-    def on_paper(self, points: Iterable[Point]) -> FloatArray:
+    def on_paper(self, points: Iterable[Point]) -> Floats:
         """Places (n, 2) of points in metres right and up from the lower left corner."""
         x, y = self.drawn(points)
         up = self.east - y if self.turned else y - self.south
@@ -100,7 +100,7 @@ def polylines(axis: Axes, view: PlanView, lines: Sequence[Sequence[Point]], **lo
         axis.plot(*view.drawn(point for line in lines for point in (*line, *gap)), **look)
 
 
-def arrow_scale(lengths_m: FloatArray, view: PlanView) -> tuple[float, float] | None:
+def arrow_scale(lengths_m: Floats, view: PlanView) -> tuple[float, float] | None:
     """Magnification on the ground and the round length of the scale arrow in metres."""
     if not np.isfinite(lengths_m).any() or np.nanmax(lengths_m) == 0.0:
         return None
@@ -111,8 +111,8 @@ def arrow_scale(lengths_m: FloatArray, view: PlanView) -> tuple[float, float] | 
 def difference_arrows(
     axis: Axes,
     view: PlanView,
-    start: FloatArray,
-    difference: FloatArray,
+    start: Floats,
+    difference: Floats,
     scale: float,
     colour: str,
     line: str = "-",
@@ -130,8 +130,8 @@ def difference_arrows(
 def many_arrows(
     axis: Axes,
     view: PlanView,
-    start: FloatArray,
-    difference: FloatArray,
+    start: Floats,
+    difference: Floats,
     scale: float,
     colour: str,
     line: str = "-",

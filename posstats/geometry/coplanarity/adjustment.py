@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.geometry.coplanarity.linearised import linearised
 from posstats.geometry.coplanarity.normals import (
@@ -28,9 +28,6 @@ from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
 from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 MAX_IMAGES = 1500  # some five dense matrices of (6 n)^2 numbers at once: 3.2 GB
 MAX_ITERATIONS = 60
@@ -61,20 +58,20 @@ class Priors:
         Stated standard deviation of an image coordinate; sets the smallest noise believed.
     """
 
-    angles_rad: _Floats
-    position_m: _Floats
-    sigma_angles_rad: _Floats
-    sigma_position_m: _Floats
+    angles_rad: Floats
+    position_m: Floats
+    sigma_angles_rad: Floats
+    sigma_position_m: Floats
     system: AngleSystem
     image_px: float
 
     @property
-    def values(self) -> _Floats:
+    def values(self) -> Floats:
         """(6 n,) unknowns, per image three angles and three coordinates."""
         return np.concatenate([self.angles_rad, self.position_m], axis=1).ravel()
 
     @property
-    def weights(self) -> _Floats:
+    def weights(self) -> Floats:
         """(6 n,)."""
         sigma = np.concatenate([self.sigma_angles_rad, self.sigma_position_m], axis=1)
         return (1.0 / sigma**2).ravel()
@@ -98,11 +95,11 @@ class AdjustedBlock:
         Number of linearisations.
     """
 
-    angles_rad: _Floats
-    position_m: _Floats
-    covariance_rad2: _Floats
+    angles_rad: Floats
+    position_m: Floats
+    covariance_rad2: Floats
     sigma_px: float
-    rejected: NDArray[np.bool_]
+    rejected: Bools
     n_iterations: int
 
 
@@ -156,7 +153,7 @@ class _Weighting:
 
     phase: _Phase
     robust: bool
-    robust_weight: _Floats
+    robust_weight: Floats
     scale_px: float = float("nan")
 
     def updated(self, observed: Observed, smallest_px: float) -> "_Weighting":
@@ -185,8 +182,8 @@ class _Weighting:
 class _State:
     """Where the iteration stands: unknowns (6 n,), noise of the image points (m, 2), weights."""
 
-    unknowns: _Floats
-    image_noise: _Floats
+    unknowns: Floats
+    image_noise: Floats
     weighting: _Weighting
 
 
@@ -194,14 +191,14 @@ class _State:
 class _Normals:
     """Parts of J'WJ, J'Wq, parts of M, D'Wq in px, v'Wv, tr(W D D')."""
 
-    normals: _Floats
-    right_side: _Floats
-    noise_normals: _Floats
-    image_noise: _Floats
+    normals: Floats
+    right_side: Floats
+    noise_normals: Floats
+    image_noise: Floats
     square_sum: float
     noise_trace: float
 
-    def matrix(self, common: _Ints, prior_weights: _Floats) -> _Floats:
+    def matrix(self, common: Ints, prior_weights: Floats) -> Floats:
         """N = J'WJ + P (6 n, 6 n), upper triangle."""
         matrix = matrix_of_parts(self.normals, common)
         matrix[np.diag_indices(len(matrix))] += prior_weights
@@ -209,7 +206,7 @@ class _Normals:
 
 
 def _improved(
-    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
+    pairs: PointPairs, priors: Priors, frames: Floats, state: _State
 ) -> tuple[_State, float]:
     """The state after a Gauss-Newton step, and the step's mean square in standard errors."""
     weighting, equations = _equations(pairs, priors, frames, state)
@@ -222,7 +219,7 @@ def _improved(
 def _equations(
     pairs: PointPairs,
     priors: Priors,
-    frames: _Floats,
+    frames: Floats,
     state: _State,
     *,
     with_noise: bool = False,
@@ -233,7 +230,7 @@ def _equations(
     return weighting, _normal_equations(pairs, observed, weighting, with_noise=with_noise)
 
 
-def _linearised(pairs: PointPairs, priors: Priors, frames: _Floats, state: _State) -> Observed:
+def _linearised(pairs: PointPairs, priors: Priors, frames: Floats, state: _State) -> Observed:
     unknowns = state.unknowns.reshape(-1, 6)
     observed = linearised(pairs, unknowns, state.image_noise, frames, priors.system)
     if not np.all(np.isfinite(observed.q)):
@@ -251,7 +248,7 @@ def _normal_equations(
     image_noise = np.zeros((len(pairs.ray_image), 2))
     pair_precision = precision(observed.variance, weighting.robust_weight)
 
-    def accumulated(points: slice) -> tuple[_Floats, _Floats, _Floats, float, float]:
+    def accumulated(points: slice) -> tuple[Floats, Floats, Floats, float, float]:
         normals, right_side = np.zeros((n_common, 6, 6)), np.zeros(6 * len(pairs.common))
         noise_normals = np.zeros((n_common if with_noise else 0, 6, 6))
         square_sum, noise_trace = accumulate_normals(
@@ -300,7 +297,7 @@ def _parts(pairs: PointPairs) -> list[slice]:
     return [part for part in (slice(0, middle), slice(middle, n_points)) if part.start < part.stop]
 
 
-def _step(normals: _Floats, right_side: _Floats) -> tuple[_Floats, float]:
+def _step(normals: Floats, right_side: Floats) -> tuple[Floats, float]:
     """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
     step = factorised(normals).solve(right_side)
     decrement = float(step @ right_side) / step.size
@@ -309,7 +306,7 @@ def _step(normals: _Floats, right_side: _Floats) -> tuple[_Floats, float]:
 
 
 def _result(
-    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State, count: int
+    pairs: PointPairs, priors: Priors, frames: Floats, state: _State, count: int
 ) -> AdjustedBlock:
     propagation, sigma2 = _propagated(pairs, priors, frames, state)
     n = len(priors.angles_rad)
@@ -327,7 +324,7 @@ def _result(
 
 
 def _propagated(
-    pairs: PointPairs, priors: Priors, frames: _Floats, state: _State
+    pairs: PointPairs, priors: Priors, frames: Floats, state: _State
 ) -> tuple[Propagation, float]:
     """Error propagation at the solution, and sigma^2 of an image coordinate."""
     _, equations = _equations(pairs, priors, frames, state, with_noise=True)

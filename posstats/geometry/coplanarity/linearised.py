@@ -8,8 +8,8 @@ opposes it in a direction without parallax, such as the tilt of the block, are o
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.geometry.coplanarity.normals import Observed
 from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.compiled import kernel
@@ -20,21 +20,18 @@ from posstats.numerics.kernels.rotation import (
     rotation_from_angles,
 )
 
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-
 
 @kernel
 def refer_to_measurements(
-    q: _Floats,
-    by_base: _Floats,
-    by_image: _Floats,
-    image_noise: _Floats,
-    left_ray: _Ints,
-    right_ray: _Ints,
-    pair: _Ints,
-    frames: _Floats,
-) -> _Floats:
+    q: Floats,
+    by_base: Floats,
+    by_image: Floats,
+    image_noise: Floats,
+    left_ray: Ints,
+    right_ray: Ints,
+    pair: Ints,
+    frames: Floats,
+) -> Floats:
     """Carry q (N,) from image points freed of noise to the measured ones, in place.
 
     `by_base` (N, 3) is turned from the base frames, `frames` (p, 3, 3) base_from_ground, into the
@@ -53,9 +50,9 @@ def refer_to_measurements(
 
 def linearised(
     pairs: PointPairs,
-    unknowns: _Floats,
-    image_noise: _Floats,
-    frames: _Floats,
+    unknowns: Floats,
+    image_noise: Floats,
+    frames: Floats,
     system: AngleSystem,
 ) -> Observed:
     """Y-parallaxes and derivatives at `unknowns` (n, 6) and at image points freed of noise.

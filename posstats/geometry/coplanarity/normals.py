@@ -23,13 +23,10 @@ Points seen by the same images share their matrices, which enter those of the bl
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.algebra import Six, add_products, six
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 RIDGE = 0.05
 
@@ -49,26 +46,26 @@ class Observed(NamedTuple):
         (N,) per unit variance of an image coordinate: d = diag(D D').
     """
 
-    q: _Floats
-    by_left_angles: _Floats
-    by_right_angles: _Floats
-    by_base: _Floats
-    by_image: _Floats
-    variance: _Floats
+    q: Floats
+    by_left_angles: Floats
+    by_right_angles: Floats
+    by_base: Floats
+    by_image: Floats
+    variance: Floats
 
 
 class PointRays(NamedTuple):
     """The pairs and the rays of g points, as in `coplanarity_pairs.PointPairs`."""
 
-    left_ray: _Ints
-    right_ray: _Ints
-    point_offsets: _Ints
-    first_ray: _Ints
-    n_rays: _Ints
-    ray_image: _Ints
+    left_ray: Ints
+    right_ray: Ints
+    point_offsets: Ints
+    first_ray: Ints
+    n_rays: Ints
+    ray_image: Ints
 
 
-def matrix_of_parts(parts: _Floats, common: _Ints) -> _Floats:
+def matrix_of_parts(parts: Floats, common: Ints) -> Floats:
     """The matrix (6 n, 6 n), right in its upper triangle, of its parts (c, 6, 6).
 
     Images without a common point make zeros, most of the matrix: it is put together last.
@@ -79,14 +76,14 @@ def matrix_of_parts(parts: _Floats, common: _Ints) -> _Floats:
     return matrix.reshape(6 * len(common), -1)
 
 
-def precision(variance: _Floats, robust_weight: _Floats) -> _Floats:
+def precision(variance: Floats, robust_weight: Floats) -> Floats:
     """(N,) diagonal of L^-1 from d = diag(D D') (N,) and the robust weights (N,) in [0, 1]."""
-    result: _Floats = robust_weight / (variance * (1.0 - robust_weight * (1.0 - RIDGE)))
+    result: Floats = robust_weight / (variance * (1.0 - robust_weight * (1.0 - RIDGE)))
     return result
 
 
 @inner_kernel
-def _add_six(row: _Floats, first: int, factor: float, values: Six) -> None:
+def _add_six(row: Floats, first: int, factor: float, values: Six) -> None:
     """Add a multiple of six numbers to a row, from `first` on."""
     row[first] += factor * values[0]
     row[first + 1] += factor * values[1]
@@ -102,12 +99,12 @@ def _add_pair(
     right: int,
     weight: float,
     q: float,
-    row: _Floats,
-    by_image: _Floats,
-    normals: _Floats,
-    right_side: _Floats,
-    noise: _Floats,
-    shared: _Floats,
+    row: Floats,
+    by_image: Floats,
+    normals: Floats,
+    right_side: Floats,
+    noise: Floats,
+    shared: Floats,
 ) -> None:
     """Add one pair to J'L^-1 J, J'L^-1 q, I + E and [H g].
 
@@ -139,12 +136,12 @@ def _add_point(
     point: int,
     points: PointRays,
     observed: Observed,
-    pair_precision: _Floats,
-    row: _Floats,
-    normals: _Floats,
-    right_side: _Floats,
-    noise: _Floats,
-    shared: _Floats,
+    pair_precision: Floats,
+    row: Floats,
+    normals: Floats,
+    right_side: Floats,
+    noise: Floats,
+    shared: Floats,
 ) -> float:
     """Add a point to J'L^-1 J and J'L^-1 q, write its I + E and [H g]; q'L^-1 q is returned."""
     noise[:], shared[:] = 0.0, 0.0
@@ -165,13 +162,13 @@ def _add_point(
 
 
 @inner_kernel
-def _square(store: _Floats, n: int) -> _Floats:
+def _square(store: Floats, n: int) -> Floats:
     """A contiguous (n, n) matrix on top of a store: the compiler vectorises only such."""
     return store[: n * n].reshape(n, n)
 
 
 @inner_kernel
-def _factorise(matrix: _Floats, n: int) -> None:
+def _factorise(matrix: Floats, n: int) -> None:
     """Lower Cholesky factor of the leading (n, n) part, in place."""
     for j in range(n):
         for k in range(j):
@@ -184,7 +181,7 @@ def _factorise(matrix: _Floats, n: int) -> None:
 
 
 @inner_kernel
-def _solve_lower(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
+def _solve_lower(factor: Floats, n: int, rows: Floats, width: int) -> None:
     """C^-1 rows, in place; rows (n, width) leading part."""
     for i in range(n):
         for k in range(i):
@@ -197,7 +194,7 @@ def _solve_lower(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
 
 
 @inner_kernel
-def _solve_upper(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
+def _solve_upper(factor: Floats, n: int, rows: Floats, width: int) -> None:
     """C'^-1 rows, in place; rows (n, width) leading part."""
     for i in range(n - 1, -1, -1):
         for k in range(i + 1, n):
@@ -210,7 +207,7 @@ def _solve_upper(factor: _Floats, n: int, rows: _Floats, width: int) -> None:
 
 
 @inner_kernel
-def _back_substitute(factor: _Floats, n: int, column: _Floats, image_noise: _Floats) -> None:
+def _back_substitute(factor: Floats, n: int, column: Floats, image_noise: Floats) -> None:
     """C'^-1 column (n,) into image_noise (n / 2, 2)."""
     for i in range(n - 1, -1, -1):
         value = column[i]
@@ -220,7 +217,7 @@ def _back_substitute(factor: _Floats, n: int, column: _Floats, image_noise: _Flo
 
 
 @inner_kernel
-def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
+def _inverse_square_sum(factor: Floats, n: int, work: Floats) -> float:
     """|C^-1|^2, the trace of (C C')^-1; work (n,)."""
     total = 0.0
     for column in range(n):
@@ -234,7 +231,7 @@ def _inverse_square_sum(factor: _Floats, n: int, work: _Floats) -> float:
 
 
 @inner_kernel
-def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
+def _subtract_projected(shared: Floats, right_side: Floats) -> float:
     """Take (C^-1 H)'(C^-1 g) from the right side; |C^-1 g|^2 is returned."""
     width = right_side.shape[0]
     square_sum = 0.0
@@ -247,7 +244,7 @@ def _subtract_projected(shared: _Floats, right_side: _Floats) -> float:
 
 
 @inner_kernel
-def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
+def _seen_by(images: Ints, point: int, points: PointRays) -> bool:
     """Whether there is such a point, and exactly these images see it."""
     if point == points.first_ray.shape[0]:
         return False
@@ -256,7 +253,7 @@ def _seen_by(images: _Ints, point: int, points: PointRays) -> bool:
 
 
 @inner_kernel
-def _scatter(local: _Floats, images: _Ints, common: _Ints, parts: _Floats) -> None:
+def _scatter(local: Floats, images: Ints, common: Ints, parts: Floats) -> None:
     """Add the upper triangle of a point's (6 n, 6 n) matrix to the block's."""
     for i in range(images.shape[0]):
         for j in range(i, images.shape[0]):
@@ -269,13 +266,13 @@ def _scatter(local: _Floats, images: _Ints, common: _Ints, parts: _Floats) -> No
 @kernel
 def accumulate_normals(
     observed: Observed,
-    pair_precision: _Floats,
+    pair_precision: Floats,
     points: PointRays,
-    common: _Ints,
-    normals: _Floats,
-    right_side: _Floats,
-    noise_normals: _Floats,
-    image_noise: _Floats,
+    common: Ints,
+    normals: Floats,
+    right_side: Floats,
+    noise_normals: Floats,
+    image_noise: Floats,
 ) -> tuple[float, float]:
     """Add the point pairs of a block to its normal equations, point by point.
 

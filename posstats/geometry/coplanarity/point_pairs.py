@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.block.image_pairs import ImagePairs, image_vectors
 from posstats.block.model import Block, Orientations, TiePoints
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 SHORTEST_BASE = 3.0  # in standard deviations of the base
 
@@ -39,19 +36,19 @@ class PointPairs:
         then j; -1 for the others.
     """
 
-    left: _Ints
-    right: _Ints
-    pair: _Ints
-    left_ray: _Ints
-    right_ray: _Ints
-    ray_vectors: _Floats
-    ray_image: _Ints
-    point_offsets: _Ints
-    first_ray: _Ints
-    n_rays: _Ints
-    common: _Ints
+    left: Ints
+    right: Ints
+    pair: Ints
+    left_ray: Ints
+    right_ray: Ints
+    ray_vectors: Floats
+    ray_image: Ints
+    point_offsets: Ints
+    first_ray: Ints
+    n_rays: Ints
+    common: Ints
 
-    def n_points_of_images(self, n_images: int) -> _Ints:
+    def n_points_of_images(self, n_images: int) -> Ints:
         """(n_images,) number of points that each image has in common with another one."""
         used = np.zeros(len(self.ray_image), dtype=bool)
         used[self.left_ray] = used[self.right_ray] = True
@@ -85,7 +82,7 @@ def point_pairs(block: Block, pairs: ImagePairs) -> PointPairs:
     )
 
 
-def _common(ties: TiePoints, n_images: int) -> _Ints:
+def _common(ties: TiePoints, n_images: int) -> Ints:
     """Number (n, n) the pairs of images of one point, those of an image with itself among them."""
     shared = np.zeros((n_images, n_images), dtype=bool)
     for shift in range(int(np.bincount(ties.point).max(initial=0))):
@@ -95,17 +92,17 @@ def _common(ties: TiePoints, n_images: int) -> _Ints:
     return np.where(shared, np.cumsum(shared).reshape(shared.shape) - 1, -1)
 
 
-def _alike_together(points: _Ints, first_ray: _Ints, n_rays: _Ints, ray_image: _Ints) -> _Ints:
+def _alike_together(points: Ints, first_ray: Ints, n_rays: Ints, ray_image: Ints) -> Ints:
     """Order the points (by number, first, last and sum of images): the same images in a row."""
     before = np.concatenate([[0], np.cumsum(ray_image)])
     first = first_ray[points]
     end = first + n_rays[points]
     keys = (before[end] - before[first], ray_image[end - 1], ray_image[first], end - first)
-    ordered: _Ints = points[np.lexsort(keys)]
+    ordered: Ints = points[np.lexsort(keys)]
     return ordered
 
 
-def long_bases(orientations: Orientations, pairs: ImagePairs) -> NDArray[np.bool_]:
+def long_bases(orientations: Orientations, pairs: ImagePairs) -> Bools:
     """(p,) whether the horizontal base is longer than three of its standard deviations.
 
     The direction of a shorter base, hence the parallax, is not known even roughly.
@@ -114,5 +111,5 @@ def long_bases(orientations: Orientations, pairs: ImagePairs) -> NDArray[np.bool
     sigma = orientations.sigma_position_m[:, :2].max(axis=1)
     base = np.linalg.norm(position[pairs.right] - position[pairs.left], axis=1)
     spread = np.hypot(sigma[pairs.left], sigma[pairs.right])
-    long: NDArray[np.bool_] = base > SHORTEST_BASE * spread
+    long: Bools = base > SHORTEST_BASE * spread
     return long

@@ -3,15 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.contract.check_points import CheckPointStatistics
 from posstats.geometry.ground.intersection import IntersectedPoints, intersect
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,20 +41,20 @@ class CheckPointResiduals:
     """
 
     orientation: str
-    point: _Ids
-    given_m: _Floats
-    difference_m: _Floats
-    sigma_m: _Floats
-    survey_sigma_m: _Floats
-    n_rays: _Ints
-    rms_px: _Floats
-    status: _Ids
+    point: Ids
+    given_m: Floats
+    difference_m: Floats
+    sigma_m: Floats
+    survey_sigma_m: Floats
+    n_rays: Ints
+    rms_px: Floats
+    status: Ids
 
     def __len__(self) -> int:
         return len(self.point)
 
     @property
-    def is_ok(self) -> NDArray[np.bool_]:
+    def is_ok(self) -> Bools:
         """(g,) true where there is a difference."""
         return np.asarray(self.status == "ok", dtype=bool)
 
@@ -88,7 +84,7 @@ def check_point_residuals(
     return differences(block, name, given, computed, computed.covariance_with_orientation_m2)
 
 
-def surveyed_check_points(block: Block) -> tuple[GroundPoints, _Ints]:
+def surveyed_check_points(block: Block) -> tuple[GroundPoints, Ints]:
     """The g check points, and (g,) their indices among the tie points; -1: in no image."""
     given = _check_points(block.ground_points)
     wanted = set(given.point)
@@ -101,7 +97,7 @@ def differences(
     name: str,
     given: GroundPoints,
     computed: IntersectedPoints,
-    covariance_m2: _Floats,
+    covariance_m2: Floats,
 ) -> CheckPointResiduals:
     """Computed minus surveyed positions, in crs axes.
 
@@ -165,7 +161,7 @@ def check_point_accuracy(
 
 
 def _extremes_and_rmse(
-    values: _Floats, divisor: int
+    values: Floats, divisor: int
 ) -> tuple[float | None, float | None, float | None]:
     if divisor < 1:
         return None, None, None
@@ -187,21 +183,21 @@ def _check_points(ground_points: GroundPoints | None) -> GroundPoints:
     )
 
 
-def _to_crs(block: Block, computed: IntersectedPoints) -> _Floats:
+def _to_crs(block: Block, computed: IntersectedPoints) -> Floats:
     """(g, 3) computed positions in the crs; NaN where there is none."""
     position = np.full((len(computed), 3), np.nan)
     position[computed.is_ok] = block.frame.to_crs(computed.position_m[computed.is_ok])
     return position
 
 
-def _variance_along_crs(block: Block, covariance_m2: _Floats, given_m: _Floats) -> _Floats:
+def _variance_along_crs(block: Block, covariance_m2: Floats, given_m: Floats) -> Floats:
     """(g, 3) variances along the crs axes, m2, of covariances (g, 3, 3) in the computing frame."""
     axes = block.frame.computing_from_crs_axes(given_m)
-    variance: _Floats = np.einsum("gji,gjk,gki->gi", axes, covariance_m2, axes)
+    variance: Floats = np.einsum("gji,gjk,gki->gi", axes, covariance_m2, axes)
     return variance
 
 
-def _survey_variance(given: GroundPoints) -> _Floats:
+def _survey_variance(given: GroundPoints) -> Floats:
     """(g, 3) variances of the surveyed positions, m2; 0 where not stated."""
     sigma = np.column_stack([given.sigma_xy_m, given.sigma_xy_m, given.sigma_z_m])
     return np.nan_to_num(sigma) ** 2

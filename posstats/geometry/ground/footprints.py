@@ -1,13 +1,11 @@
 """Where the images lie on the ground, for the plan of the block."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.camera import Camera
 from posstats.block.model import Block
 from posstats.geometry.ground.intersection import intersect
-
-_Floats = NDArray[np.float64]
 
 SAMPLE = 500
 """Tie points from which the mean ground height is taken."""
@@ -23,7 +21,7 @@ def ground_height_m(block: Block) -> float:
     return float(np.median(heights)) if len(heights) else np.nan
 
 
-def footprints(block: Block) -> list[_Floats | None]:
+def footprints(block: Block) -> list[Floats | None]:
     """Corners (4, 2) of every image on the level of the mean ground height, crs axes.
 
     Lens distortion is neglected. None where a corner looks above the horizon or the ground
@@ -38,7 +36,7 @@ def footprints(block: Block) -> list[_Floats | None]:
     ]
 
 
-def _corners(camera: Camera) -> _Floats:
+def _corners(camera: Camera) -> Floats:
     """(4, 3) image vectors of the format's corners, going round."""
     columns = np.array([0.0, camera.width_px, camera.width_px, 0.0])
     rows = np.array([0.0, 0.0, camera.height_px, camera.height_px])
@@ -48,8 +46,8 @@ def _corners(camera: Camera) -> _Floats:
 
 
 def _footprint(
-    block: Block, centre_m: _Floats, ground_from_image: _Floats, corners: _Floats, height_m: float
-) -> _Floats | None:
+    block: Block, centre_m: Floats, ground_from_image: Floats, corners: Floats, height_m: float
+) -> Floats | None:
     directions = corners @ ground_from_image.T
     if not np.all(directions[:, 2] < 0.0) or not centre_m[2] > height_m:
         return None

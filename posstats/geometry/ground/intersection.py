@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.camera import Camera
 from posstats.block.image_pairs import image_vectors
 from posstats.block.model import Accuracy, Orientations, TiePoints
@@ -15,10 +16,6 @@ from posstats.numerics.kernels.collinearity import (
     project_derivatives,
 )
 from posstats.numerics.kernels.rotation import rotation_derivatives
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 # In the order of the status numbers of the kernel.
 _STATUS = np.array(
@@ -51,19 +48,19 @@ class IntersectedPoints:
         "not converged".
     """
 
-    point: _Ints
-    position_m: _Floats
-    covariance_m2: _Floats
-    covariance_with_orientation_m2: _Floats
-    n_rays: _Ints
-    rms_px: _Floats
-    status: _Ids
+    point: Ints
+    position_m: Floats
+    covariance_m2: Floats
+    covariance_with_orientation_m2: Floats
+    n_rays: Ints
+    rms_px: Floats
+    status: Ids
 
     def __len__(self) -> int:
         return len(self.point)
 
     @property
-    def is_ok(self) -> NDArray[np.bool_]:
+    def is_ok(self) -> Bools:
         """(k,) true where there is a position."""
         return np.asarray(self.status == "ok", dtype=bool)
 
@@ -122,10 +119,10 @@ def intersect(
     )
 
 
-def _usable_rays(tie_points: TiePoints, orientations: Orientations, wanted: _Ints) -> TiePoints:
+def _usable_rays(tie_points: TiePoints, orientations: Orientations, wanted: Ints) -> TiePoints:
     """Rays of the wanted points in images that have an orientation, sorted by point, image."""
     elements = np.hstack([orientations.position_m, orientations.angles_rad])
-    oriented: NDArray[np.bool_] = np.all(np.isfinite(elements), axis=1)
+    oriented: Bools = np.all(np.isfinite(elements), axis=1)
     is_wanted = np.zeros(len(tie_points.point_id), dtype=bool)
     is_wanted[wanted[wanted >= 0]] = True
     usable = tie_points.subset(oriented[tie_points.image] & is_wanted[tie_points.point])
@@ -135,7 +132,7 @@ def _usable_rays(tie_points: TiePoints, orientations: Orientations, wanted: _Int
     )
 
 
-def _ranges(first: _Ints, last: _Ints) -> tuple[_Ints, _Ints]:
+def _ranges(first: Ints, last: Ints) -> tuple[Ints, Ints]:
     """Concatenation of the ranges first[i] ... last[i] - 1, and the offsets (k + 1,) in it."""
     counts = last - first
     offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.intp)
@@ -143,8 +140,8 @@ def _ranges(first: _Ints, last: _Ints) -> tuple[_Ints, _Ints]:
 
 
 def _precision(
-    ground: _Floats, offsets: _Ints, image: _Ints, vectors: _Floats, orientations: Orientations
-) -> tuple[_Floats, _Floats, _Floats]:
+    ground: Floats, offsets: Ints, image: Ints, vectors: Floats, orientations: Orientations
+) -> tuple[Floats, Floats, Floats]:
     """Of k points: cofactors m2/px2, covariance from the orientations m2, RMS of residuals px."""
     counts = np.diff(offsets)
     point = np.repeat(np.arange(len(ground)), counts)
@@ -172,7 +169,7 @@ def _precision(
     return cofactors, from_orientations, rms_px
 
 
-def _scattered(values: _Floats, rows: _Ints, n: int) -> _Floats:
+def _scattered(values: Floats, rows: Ints, n: int) -> Floats:
     """`values` in the given rows of an array of n rows, NaN elsewhere."""
     out = np.full((n, *values.shape[1:]), np.nan)
     out[rows] = values

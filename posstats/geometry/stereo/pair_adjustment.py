@@ -1,8 +1,8 @@
 """Relative orientation of pairs of images by damped least squares on the y-parallax; compiled."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.geometry.stereo.pair_equations import (
     Pair,
     normal_equations,
@@ -12,9 +12,6 @@ from posstats.geometry.stereo.pair_equations import (
 )
 from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 CONVERGED, NOT_CONVERGED, RANK_DEFICIENT = 0, 1, 2
 
@@ -31,7 +28,7 @@ _RANK_PIVOT = 3e-7
 
 
 @inner_kernel
-def least_squares(pair: Pair, state: _Floats, last_step_px: float) -> tuple[_Floats, int, int]:
+def least_squares(pair: Pair, state: Floats, last_step_px: float) -> tuple[Floats, int, int]:
     """Minimise the weighted sum of q^2 over the free elements, from `state`.
 
     Gauss-Newton, damped as by Levenberg and Marquardt where a step does not lower the sum; the
@@ -86,7 +83,7 @@ def _next_damping(damping: float, growth: float, gain: float, pivot: float) -> t
 
 
 @inner_kernel
-def moved(state: _Floats, free: _Ints, step: _Floats) -> _Floats:
+def moved(state: Floats, free: Ints, step: Floats) -> Floats:
     """The state with its free elements changed by the step."""
     moved = state.copy()
     for i in range(len(free)):
@@ -95,7 +92,7 @@ def moved(state: _Floats, free: _Ints, step: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _rms_of_kept(pair: Pair, state: _Floats) -> float:
+def _rms_of_kept(pair: Pair, state: Floats) -> float:
     q = residuals(pair, state)
     total, count = 0.0, 0
     for k in range(len(q)):
@@ -107,18 +104,18 @@ def _rms_of_kept(pair: Pair, state: _Floats) -> float:
 
 @kernel
 def adjust_pairs(
-    left_vectors: _Floats,
-    right_vectors: _Floats,
-    weights: _Floats,
-    offsets: _Ints,
-    frames: _Floats,
+    left_vectors: Floats,
+    right_vectors: Floats,
+    weights: Floats,
+    offsets: Ints,
+    frames: Floats,
     phi_first: bool,
-    free: _Ints,
-    pairs: _Ints,
-    state: _Floats,
-    rms: _Floats,
-    status: _Ints,
-    iterations: _Ints,
+    free: Ints,
+    pairs: Ints,
+    state: Floats,
+    rms: Floats,
+    status: Ints,
+    iterations: Ints,
 ) -> None:
     """Relative orientation of some pairs of images by least squares on q.
 

@@ -6,8 +6,8 @@ of points (Rousseeuw and Leroy 1987) give Tukey's weights their start.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.geometry.stereo.pair_adjustment import least_squares, moved
 from posstats.geometry.stereo.pair_equations import (
     Pair,
@@ -18,9 +18,6 @@ from posstats.geometry.stereo.pair_equations import (
 )
 from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 _HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-1
 _HUBER = 0.3  # of the scale: nearly least absolute values, which blunders bend little
@@ -37,15 +34,15 @@ _BETTER_SCALE = 0.7  # share of the scale at which a sample is believed
 
 @kernel
 def weigh_pairs(
-    left_vectors: _Floats,
-    right_vectors: _Floats,
-    weights: _Floats,
-    offsets: _Ints,
-    frames: _Floats,
+    left_vectors: Floats,
+    right_vectors: Floats,
+    weights: Floats,
+    offsets: Ints,
+    frames: Floats,
     phi_first: bool,
-    free: _Ints,
-    pairs: _Ints,
-    state: _Floats,
+    free: Ints,
+    pairs: Ints,
+    state: Floats,
 ) -> None:
     """Write robust weights (0: rejected), and the state that they belong to.
 
@@ -61,7 +58,7 @@ def weigh_pairs(
 
 
 @inner_kernel
-def _find_blunders(pair: Pair, start: _Floats) -> _Floats:
+def _find_blunders(pair: Pair, start: Floats) -> Floats:
     """Write robust weights: Huber's from any start, then Tukey's, which reject; the new state.
 
     Few blunders of a small model, or many of a large one, bend Huber's solution. Then Tukey's
@@ -90,7 +87,7 @@ def _is_doubtful(pair: Pair) -> bool:
 
 
 @inner_kernel
-def _closer(pair: Pair, sampled: _Floats, state: _Floats) -> _Floats:
+def _closer(pair: Pair, sampled: Floats, state: Floats) -> Floats:
     """The sampled state if the points lie much closer to it."""
     u = len(pair.free)
     scale, sampled_scale = (
@@ -101,7 +98,7 @@ def _closer(pair: Pair, sampled: _Floats, state: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _best_sample(pair: Pair, state: _Floats) -> _Floats:
+def _best_sample(pair: Pair, state: Floats) -> Floats:
     """Of the states that fit as many random points as elements, that with the least scale of q.
 
     Rousseeuw and Leroy (1987), with q linearised at `state`, to which the POS is near enough.
@@ -124,7 +121,7 @@ def _best_sample(pair: Pair, state: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _shuffle(order: _Ints, n: int, random: int) -> int:
+def _shuffle(order: Ints, n: int, random: int) -> int:
     """Put random numbers first in the order, n of them; the state of the generator.
 
     The generator is that of Park and Miller (1988): results must not change from run to run.
@@ -137,7 +134,7 @@ def _shuffle(order: _Ints, n: int, random: int) -> int:
 
 
 @inner_kernel
-def _solve_sample(equations: _Floats, sample: _Ints, step: _Floats) -> float:
+def _solve_sample(equations: Floats, sample: Ints, step: Floats) -> float:
     """Write the step that makes q of the sampled points zero; 0 where there is none."""
     u = len(step)
     normals, gradient = np.zeros((u, u)), np.zeros(u)
@@ -151,7 +148,7 @@ def _solve_sample(equations: _Floats, sample: _Ints, step: _Floats) -> float:
 
 
 @inner_kernel
-def _median_size(q: _Floats, n_elements: int) -> float:
+def _median_size(q: Floats, n_elements: int) -> float:
     """Median of |q|, the `n_elements` smallest left out: a robust fit makes as many zero.
 
     Hoare's selection, as `np.median` takes long to compile.
@@ -179,7 +176,7 @@ def _median_size(q: _Floats, n_elements: int) -> float:
 
 
 @inner_kernel
-def _scale_px(q: _Floats, n_elements: int) -> float:
+def _scale_px(q: Floats, n_elements: int) -> float:
     """Robust standard deviation of q: the median size, corrected for few points.
 
     The factor 1 + 5 / (n - u) is that of Rousseeuw and Leroy (1987).
@@ -190,7 +187,7 @@ def _scale_px(q: _Floats, n_elements: int) -> float:
 
 
 @inner_kernel
-def _reweighted(pair: Pair, state: _Floats, tukey: bool) -> float:
+def _reweighted(pair: Pair, state: Floats, tukey: bool) -> float:
     """Write the weights of Huber or Tukey at `state`; their largest change."""
     q = residuals(pair, state)
     scale = _scale_px(q, len(pair.free))

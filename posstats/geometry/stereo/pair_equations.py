@@ -9,14 +9,11 @@ ratios BY / BX and BZ / BX of the base.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.algebra import Matrix, Vector, cross, dot, rotated, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel
 from posstats.numerics.kernels.coplanarity import parallax, parallax_gradients
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 _N_STATE = 8
 _LANES = 64  # points worked on at once
@@ -30,15 +27,15 @@ class Pair(NamedTuple):
     filled up with points of weight 0.
     """
 
-    blocks: _Floats
-    weights: _Floats
-    frames: _Floats
+    blocks: Floats
+    weights: Floats
+    frames: Floats
     phi_first: bool
-    free: _Ints
+    free: Ints
 
 
 @inner_kernel
-def packed(left_vectors: _Floats, right_vectors: _Floats) -> _Floats:
+def packed(left_vectors: Floats, right_vectors: Floats) -> Floats:
     """The `blocks` of a `Pair`, without weights, of image vectors (n, 3)."""
     n = len(left_vectors)
     blocks = np.empty(((n + _LANES - 1) // _LANES, 7 * _LANES))
@@ -61,7 +58,7 @@ def take_weights(pair: Pair) -> None:
 
 
 @inner_kernel
-def residuals(pair: Pair, state: _Floats) -> _Floats:
+def residuals(pair: Pair, state: Floats) -> Floats:
     """The y-parallaxes q (n,) of the points, px."""
     rotation = _turns(pair, state, np.empty((_N_STATE, _N_STATE)))
     left, right, base = _in_registers(rotation[0]), _in_registers(rotation[1]), _base(state)
@@ -75,7 +72,7 @@ def residuals(pair: Pair, state: _Floats) -> _Floats:
 
 
 @inner_kernel
-def normal_equations(pair: Pair, state: _Floats) -> tuple[float, _Floats, _Floats]:
+def normal_equations(pair: Pair, state: Floats) -> tuple[float, Floats, Floats]:
     """Sum of weighted q^2, and the normals (u, u) and gradient (u,) of the u free elements."""
     elements = np.zeros((_N_STATE, _N_STATE))
     products = _products(pair, state, elements)
@@ -93,7 +90,7 @@ def normal_equations(pair: Pair, state: _Floats) -> tuple[float, _Floats, _Float
 
 
 @inner_kernel
-def linearised(pair: Pair, state: _Floats) -> _Floats:
+def linearised(pair: Pair, state: Floats) -> Floats:
     """Derivatives of q by the u free elements and, last, q: (n, u + 1), without weights."""
     elements = np.zeros((_N_STATE, _N_STATE))
     rotation = _turns(pair, state, elements)
@@ -111,7 +108,7 @@ def linearised(pair: Pair, state: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _products(pair: Pair, state: _Floats, elements: _Floats) -> _Floats:
+def _products(pair: Pair, state: Floats, elements: Floats) -> Floats:
     """Products (9, 9) of the columns of `_write_design`, and the `elements` of `_turns`."""
     rotation = _turns(pair, state, elements)
     products = np.zeros((_N_STATE + 1, _N_STATE + 1))
@@ -130,7 +127,7 @@ def _products(pair: Pair, state: _Floats, elements: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _write_design(block: _Floats, rotation: _Floats, base: Vector, design: _Floats) -> None:
+def _write_design(block: Floats, rotation: Floats, base: Vector, design: Floats) -> None:
     """Write the weighted derivatives and, last, the weighted q of the points of a block.
 
     The derivatives are by small turns of either image about the axes of the base frame, by BY
@@ -154,7 +151,7 @@ def _write_design(block: _Floats, rotation: _Floats, base: Vector, design: _Floa
 
 
 @inner_kernel
-def _turns(pair: Pair, state: _Floats, elements: _Floats) -> _Floats:
+def _turns(pair: Pair, state: Floats, elements: Floats) -> Floats:
     """Rotations base_from_image (2, 3, 3) of the left and the right image.
 
     The rows of `elements` (8, 8), all zero before, become the effects of the elements of the
@@ -187,18 +184,18 @@ def _turns(pair: Pair, state: _Floats, elements: _Floats) -> _Floats:
 
 
 @inner_kernel
-def _ray(block: _Floats, image: int, k: int) -> Vector:
+def _ray(block: Floats, image: int, k: int) -> Vector:
     first = 3 * _LANES * image + k
     return block[first], block[first + _LANES], block[first + 2 * _LANES]
 
 
 @inner_kernel
-def _base(state: _Floats) -> Vector:
+def _base(state: Floats) -> Vector:
     return (1.0, state[6], state[7])
 
 
 @inner_kernel
-def _in_registers(matrix: _Floats) -> Matrix:
+def _in_registers(matrix: Floats) -> Matrix:
     return (
         (matrix[0, 0], matrix[0, 1], matrix[0, 2]),
         (matrix[1, 0], matrix[1, 1], matrix[1, 2]),

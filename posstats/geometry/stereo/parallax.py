@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels
-
-_Floats = NDArray[np.float64]
 
 NOTICEABLE = 0.10
 """Relative change of a mean parallax from which it is worth a word."""
@@ -39,7 +37,7 @@ class StripParallax:
     mean_mm: float
 
 
-def model_rms_px(models: StereoModels) -> _Floats:
+def model_rms_px(models: StereoModels) -> Floats:
     """(p,) root mean square of the y-parallax of all points of each model, px at image scale.
 
     NaN for models of fewer than `MIN_MODEL_POINTS` points, without a base or an orientation.
@@ -52,7 +50,7 @@ def model_rms_px(models: StereoModels) -> _Floats:
     return rms
 
 
-def strip_statistics(models: StereoModels, rms_px: _Floats) -> tuple[StripParallax, ...]:
+def strip_statistics(models: StereoModels, rms_px: Floats) -> tuple[StripParallax, ...]:
     """Maximum, minimum and mean over the models of every strip (Table 2 of the first paper).
 
     Parameters
@@ -72,13 +70,13 @@ def strip_statistics(models: StereoModels, rms_px: _Floats) -> tuple[StripParall
     )
 
 
-def block_statistics(models: StereoModels, rms_px: _Floats) -> StripParallax:
+def block_statistics(models: StereoModels, rms_px: Floats) -> StripParallax:
     """Maximum, minimum and mean over all models of the block; parameters as for the strips."""
     return _statistics(models, rms_px, np.ones(len(models), dtype=bool), None)
 
 
 def _statistics(
-    models: StereoModels, rms_px: _Floats, chosen: NDArray[np.bool_], strip: str | None
+    models: StereoModels, rms_px: Floats, chosen: Bools, strip: str | None
 ) -> StripParallax:
     valued = chosen & np.isfinite(rms_px)
     max_px, min_px, mean_px = _max_min_mean(rms_px[valued])
@@ -86,7 +84,7 @@ def _statistics(
     return StripParallax(strip, int(valued.sum()), max_px, min_px, mean_px, max_mm, min_mm, mean_mm)
 
 
-def _max_min_mean(values: _Floats) -> tuple[float, float, float]:
+def _max_min_mean(values: Floats) -> tuple[float, float, float]:
     if len(values) == 0:
         return np.nan, np.nan, np.nan
     return float(values.max()), float(values.min()), float(values.mean())

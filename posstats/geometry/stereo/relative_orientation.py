@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels
 from posstats.errors import GeometryError
 from posstats.geometry.stereo.pair_adjustment import (
@@ -30,10 +30,6 @@ from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,
 )
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Texts = NDArray[np.object_]
 
 Method = Literal["independent", "dependent", "angles", "omega", "phi", "kappa"]
 
@@ -88,29 +84,29 @@ class RelativeOrientation:
         (p,) iterations of the (last) adjustment.
     """
 
-    y_parallax_rms_px: _Floats
-    y_parallax_rms_mm: _Floats
-    n_points: _Ints
-    n_rejected: _Ints
-    converged: NDArray[np.bool_]
-    status: _Texts
-    weights: _Floats
-    ground_from_left: _Floats
-    ground_from_right: _Floats
-    base_m: _Floats
-    n_iterations: _Ints
+    y_parallax_rms_px: Floats
+    y_parallax_rms_mm: Floats
+    n_points: Ints
+    n_rejected: Ints
+    converged: Bools
+    status: Ids
+    weights: Floats
+    ground_from_left: Floats
+    ground_from_right: Floats
+    base_m: Floats
+    n_iterations: Ints
 
 
 @dataclass(frozen=True, eq=False)
 class _Start:
     """Start values of p models: angles (p, 2, 3) radians about constant frames (p, 2, 3, 3)."""
 
-    frames: _Floats
-    angles_rad: _Floats
-    base: _Floats
-    base_from_ground: _Floats
-    weights: _Floats
-    status: _Texts
+    frames: Floats
+    angles_rad: Floats
+    base: Floats
+    base_from_ground: Floats
+    weights: Floats
+    status: Ids
 
 
 def orient(
@@ -234,7 +230,7 @@ def _weighted_as(start: _Start, solution: RelativeOrientation) -> _Start:
     return replace(start, weights=solution.weights.copy(), status=solution.status)
 
 
-def _usable(models: StereoModels) -> _Texts:
+def _usable(models: StereoModels) -> Ids:
     """(p,) "ok", or why a model cannot be oriented at all."""
     orientations = models.orientations
     images = np.stack([models.pairs.left, models.pairs.right], axis=1)
@@ -273,7 +269,7 @@ def _adjusted(
         numbers,
     )
 
-    def adjust(pairs: _Ints) -> None:
+    def adjust(pairs: Ints) -> None:
         if robust:
             weigh_pairs(*equations, pairs, state)
         adjust_pairs(*equations, pairs, state, rms, code, iterations)
@@ -284,7 +280,7 @@ def _adjusted(
     return _result(models, start, state, rms, status, weights, iterations)
 
 
-def _in_threads(adjust: Callable[[_Ints], None], pairs: _Ints, n_points: _Ints) -> None:
+def _in_threads(adjust: Callable[[Ints], None], pairs: Ints, n_points: Ints) -> None:
     """Run `adjust` on shares of the pairs with about the same numbers of points."""
     total = np.cumsum(n_points[pairs])
     n_threads = min(os.cpu_count() or 1, int(total[-1:].sum()) // _POINTS_PER_THREAD)
@@ -296,22 +292,22 @@ def _in_threads(adjust: Callable[[_Ints], None], pairs: _Ints, n_points: _Ints) 
         list(pool.map(adjust, np.split(pairs, cuts)))
 
 
-def _turned_rad(start: _Start, turn: _Floats, system: AngleSystem) -> _Floats:
+def _turned_rad(start: _Start, turn: Floats, system: AngleSystem) -> Floats:
     """(p,) the larger of the angles by which the two images were turned from the start."""
     given = rotation_from_angles(start.angles_rad, system)
     cosine = 0.5 * (np.einsum("pkij,pkij->pk", given, turn) - 1.0)
-    turned: _Floats = np.arccos(np.clip(cosine, -1.0, 1.0)).max(axis=1)
+    turned: Floats = np.arccos(np.clip(cosine, -1.0, 1.0)).max(axis=1)
     return turned
 
 
 def _result(
     models: StereoModels,
     start: _Start,
-    state: _Floats,
-    rms_px: _Floats,
-    status: _Texts,
-    weights: _Floats,
-    iterations: _Ints,
+    state: Floats,
+    rms_px: Floats,
+    status: Ids,
+    weights: Floats,
+    iterations: Ints,
 ) -> RelativeOrientation:
     n_points = models.pairs.n_points
     pair_of_point = models.pairs.pair_of_point

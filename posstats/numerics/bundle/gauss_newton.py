@@ -9,14 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.errors import ConvergenceError, GeometryError
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
 from posstats.numerics.bundle.system import BundleSystem, Equations, State
 from posstats.numerics.solvers.arrow import SelectedInverse
-
-_Floats = NDArray[np.float64]
 
 MAX_ITERATIONS = 100
 _SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together
@@ -135,28 +133,28 @@ class _Iteration:
             self.progress(self.count, MAX_ITERATIONS)
 
 
-def _scale(standardised: _Floats) -> float:
+def _scale(standardised: Floats) -> float:
     """Scale of standardised residuals (m, 2), from their median."""
     spread = _NORMAL_MAD * float(np.nanmedian(np.abs(standardised)))
     return max(spread, _SMALLEST_SCALE)
 
 
-def _huber(standardised: _Floats) -> _Floats:
+def _huber(standardised: Floats) -> Floats:
     """(m,) Huber's weights of rays by the larger of their standardised residuals (m, 2)."""
     limit = _HUBER * _scale(standardised)
-    weight: _Floats = limit / np.maximum(_largest(standardised), limit)
+    weight: Floats = limit / np.maximum(_largest(standardised), limit)
     return weight
 
 
-def _kept(standardised: _Floats) -> _Floats:
+def _kept(standardised: Floats) -> Floats:
     """(m,) 1, or 0 of blunders."""
     limit = _REJECTION * _scale(standardised)
     return np.where(_largest(standardised) <= limit, 1.0, 0.0)
 
 
-def _largest(standardised: _Floats) -> _Floats:
+def _largest(standardised: Floats) -> Floats:
     """(m,) the larger of two residuals, infinite behind a camera (rays of points left out)."""
-    largest: _Floats = np.nan_to_num(np.abs(standardised).max(axis=1), nan=np.inf)
+    largest: Floats = np.nan_to_num(np.abs(standardised).max(axis=1), nan=np.inf)
     return largest
 
 
@@ -210,23 +208,21 @@ def _result(system: BundleSystem, equations: Equations, n_iterations: int) -> Ad
     )
 
 
-def _by_ray(system: BundleSystem, values: _Floats) -> _Floats:
+def _by_ray(system: BundleSystem, values: Floats) -> Floats:
     """(m, ...) in the order of the problem."""
     result = np.empty_like(values)
     result[system.rays.ray] = values
     return result
 
 
-def _by_point(system: BundleSystem, values: _Floats) -> _Floats:
+def _by_point(system: BundleSystem, values: Floats) -> Floats:
     """(p, ...) in the order of the problem, NaN of points without rays."""
     result = np.full((len(system.problem.ground_m), *values.shape[1:]), np.nan)
     result[system.rays.point] = values
     return result
 
 
-def _pos_redundancy(
-    system: BundleSystem, equations: Equations, inverse: SelectedInverse
-) -> _Floats:
+def _pos_redundancy(system: BundleSystem, equations: Equations, inverse: SelectedInverse) -> Floats:
     """(n, 6) redundancy numbers of antenna positions and angles, NaN where not observed."""
     pos, weight = equations.pos, system.problem.pos.weight
     image = np.arange(len(weight))

@@ -5,8 +5,8 @@ unknowns.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.numerics.bundle.point_groups import PointGroups
 from posstats.numerics.bundle.point_normals import (
     Ground,
@@ -22,8 +22,6 @@ from posstats.numerics.bundle.point_normals import (
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.numerics.kernels.compiled import inlined_kernel, kernel
 
-_Floats = NDArray[np.float64]
-
 _INTERSECTION_STEPS = 3
 
 
@@ -32,10 +30,10 @@ def move_points(
     first_group: int,
     last_group: int,
     network: Network,
-    image_step: _Floats,
-    common_step: _Floats,
+    image_step: Floats,
+    common_step: Floats,
     damping: float,
-    new_position_m: _Floats,
+    new_position_m: Floats,
 ) -> None:
     """Move the points of some groups as a step of the other unknowns asks for.
 
@@ -85,8 +83,8 @@ def _square_sum(
     images: Images,
     cameras: Cameras,
     ray: Ray,
-    normals: _Floats,
-    side: _Floats,
+    normals: Floats,
+    side: Floats,
 ) -> float:
     """The sum v'Wv of a point's rays and control, infinite behind a camera; overwrites N, n."""
     total = add_control(point, ground, normals, side)
@@ -140,9 +138,7 @@ def intersect_points(first_group: int, last_group: int, network: Network) -> Non
 
 
 @kernel
-def ray_residuals(
-    first_group: int, last_group: int, network: Network, residual_px: _Floats
-) -> None:
+def ray_residuals(first_group: int, last_group: int, network: Network, residual_px: Floats) -> None:
     """Write the residuals (m, 2) of the rays of some groups, NaN behind a camera.
 
     Parameters are those of `normals.accumulate`; a residual is computed minus measured.

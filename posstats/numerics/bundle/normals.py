@@ -12,8 +12,8 @@ and sums: nothing of the size of the number of rays is stored.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.numerics.bundle.point_groups import PointGroups
 from posstats.numerics.bundle.point_normals import (
     Ground,
@@ -28,9 +28,6 @@ from posstats.numerics.bundle.point_normals import (
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.numerics.kernels.algebra import add_products
 from posstats.numerics.kernels.compiled import inlined_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 _BATCH = 16  # points whose T are collected before they are multiplied
 
@@ -50,11 +47,11 @@ class Reduced(NamedTuple):
         (n, 6), (k,): gradient J'Wv.
     """
 
-    blocks: _Floats
-    border: _Floats
-    corner: _Floats
-    images: _Floats
-    common: _Floats
+    blocks: Floats
+    border: Floats
+    corner: Floats
+    images: Floats
+    common: Floats
 
 
 @inlined_kernel
@@ -64,9 +61,9 @@ def _add_direct(
     place: int,
     n_images: int,
     camera: int,
-    column: _Ints,
-    rows: _Floats,
-    local: _Floats,
+    column: Ints,
+    rows: Floats,
+    local: Floats,
 ) -> float:
     """Add w A'A and w A'v of a ray to a group's matrix (upper triangle); w v'v is returned.
 
@@ -101,7 +98,7 @@ def _add_direct(
 
 @inlined_kernel
 def _add_turned(
-    x: float, y: float, z: float, d: _Floats, row: int, column: int, local: _Floats
+    x: float, y: float, z: float, d: Floats, row: int, column: int, local: Floats
 ) -> None:
     """Add [[d]x, -1]' (x, y, z) to six rows of a column."""
     local[row, column] += y * d[2] - z * d[1]
@@ -122,10 +119,10 @@ def _add_point(
     cameras: Cameras,
     damping: float,
     ray: Ray,
-    normals: _Floats,
-    side: _Floats,
-    rows: _Floats,
-    local: _Floats,
+    normals: Floats,
+    side: Floats,
+    rows: Floats,
+    local: Floats,
 ) -> tuple[bool, float, float]:
     """Add a point to its group's matrix, all but T'T; write [T t] to rows (3, width).
 
@@ -156,7 +153,7 @@ def _add_point(
 
 
 @inlined_kernel
-def _scatter(local: _Floats, members: _Ints, pairs: _Ints, n_common: int, out: Reduced) -> None:
+def _scatter(local: Floats, members: Ints, pairs: Ints, n_common: int, out: Reduced) -> None:
     """Add a group's matrix (upper triangle) to the block's."""
     n, last, at = len(members), local.shape[0] - 1, 0
     for i in range(n):
@@ -182,7 +179,7 @@ def accumulate(
     last_group: int,
     network: Network,
     damping: float,
-    determined: NDArray[np.bool_],
+    determined: Bools,
     out: Reduced,
 ) -> tuple[float, float, float]:
     """Add the points of groups first_group ... last_group - 1 to the reduced normal equations.

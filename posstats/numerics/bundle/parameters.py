@@ -4,14 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.errors import GeometryError
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
-_Ids = NDArray[np.object_]
 
 BLOCK = "block"
 GNSS_SHIFTS, GNSS_DRIFTS = (
@@ -87,12 +83,12 @@ class Exposures:
         (c,).
     """
 
-    time_s: _Floats
-    strip: _Ids
-    camera: _Ints
+    time_s: Floats
+    strip: Ids
+    camera: Ints
     camera_id: tuple[str, ...]
 
-    def within(self, scope: str) -> NDArray[np.bool_]:
+    def within(self, scope: str) -> Bools:
         """(n,) images of a scope.
 
         Raises
@@ -123,12 +119,12 @@ class ParameterEffects:
         (r,) indices of the camera parameters among the k.
     """
 
-    gnss: _Floats
-    imu: _Floats
-    lever_arm: _Ints
-    boresight: _Ints
-    camera_column: _Ints
-    camera: _Ints
+    gnss: Floats
+    imu: Floats
+    lever_arm: Ints
+    boresight: Ints
+    camera_column: Ints
+    camera: Ints
 
 
 def parameter_effects(
@@ -169,7 +165,7 @@ def parameter_effects(
     )
 
 
-def _trend(parameter: CommonParameter, exposures: Exposures) -> _Floats:
+def _trend(parameter: CommonParameter, exposures: Exposures) -> Floats:
     """(n,) 1 for a shift, t - t0 for a drift, 0 outside its scope; t0 its first exposure."""
     inside = exposures.within(parameter.scope)
     since_s = exposures.time_s - exposures.time_s[inside].min()

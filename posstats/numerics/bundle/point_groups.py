@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-_Ints = NDArray[np.intp]
+from posstats.arrays import Bools, Ints
+
 _N_PARTS = 2  # the same sums on every machine, whatever its number of processors
 
 
@@ -33,11 +34,11 @@ class PointGroups(NamedTuple):
         Indices of the image pairs (i <= j, row by row) of every group.
     """
 
-    offsets: _Ints
-    first_ray: _Ints
-    ray_image: _Ints
-    pair_offsets: _Ints
-    pair: _Ints
+    offsets: Ints
+    first_ray: Ints
+    ray_image: Ints
+    pair_offsets: Ints
+    pair: Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +57,11 @@ class GroupedRays:
         (P,) image pairs with a common point, first <= second, and every image with itself.
     """
 
-    point: _Ints
-    ray: _Ints
+    point: Ints
+    ray: Ints
     groups: PointGroups
-    first: _Ints
-    second: _Ints
+    first: Ints
+    second: Ints
 
     @property
     def parts(self) -> list[tuple[int, int]]:
@@ -71,7 +72,7 @@ class GroupedRays:
         return [(a, b) for a, b in pairwise(bounds) if a < b]
 
 
-def grouped(point: _Ints, image: _Ints, n_images: int) -> GroupedRays:
+def grouped(point: Ints, image: Ints, n_images: int) -> GroupedRays:
     """Group rays (m,) of points and images; no point is twice in an image."""
     by_point = np.lexsort((image, point))
     starts = np.flatnonzero(np.diff(point[by_point], prepend=-1))
@@ -95,19 +96,19 @@ def grouped(point: _Ints, image: _Ints, n_images: int) -> GroupedRays:
     )
 
 
-def _keys(images: _Ints, starts: _Ints, n_images: int) -> NDArray[np.uint64]:
+def _keys(images: Ints, starts: Ints, n_images: int) -> NDArray[np.uint64]:
     """(p,) a number for the images of every point; equal images have equal numbers."""
     code = np.random.default_rng(0).integers(0, 2**63, n_images, dtype=np.uint64)
     return np.asarray(np.add.reduceat(code[images], starts))
 
 
-def _ranges(first: _Ints, length: _Ints) -> _Ints:
+def _ranges(first: Ints, length: Ints) -> Ints:
     """first[0], first[0] + 1, ... of the given lengths, one after the other."""
     ends = np.cumsum(length)
     return np.arange(ends[-1]) + np.repeat(first - ends + length, length)
 
 
-def _differs(first_ray: _Ints, ray_image: _Ints) -> NDArray[np.bool_]:
+def _differs(first_ray: Ints, ray_image: Ints) -> Bools:
     """(p,) whether a point is seen by other images than the point before."""
     n_rays = np.diff(first_ray)
     differs = np.append(True, n_rays[1:] != n_rays[:-1])
@@ -122,11 +123,11 @@ def _differs(first_ray: _Ints, ray_image: _Ints) -> NDArray[np.bool_]:
 
 
 @lru_cache(maxsize=64)
-def _upper(n: int) -> tuple[_Ints, _Ints]:
+def _upper(n: int) -> tuple[Ints, Ints]:
     return np.triu_indices(n)
 
 
-def _pairs(images: _Ints) -> _Ints:
+def _pairs(images: Ints) -> Ints:
     """(2, n (n + 1) / 2) images i <= j, row by row."""
     rows, columns = _upper(len(images))
     return np.stack([images[rows], images[columns]])

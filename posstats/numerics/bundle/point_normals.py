@@ -9,14 +9,11 @@ of its image and the camera, B by its point. The sums over the rays of one point
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.bundle.point_groups import PointGroups
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, observe
 from posstats.numerics.kernels.compiled import inlined_kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 # Smallest pivot, of a point's normal equations scaled to a unit diagonal, that determines it.
 _SINGULAR_PIVOT = 1e-12
@@ -33,8 +30,8 @@ class Measured(NamedTuple):
         (m,) 1/px2; 0 takes a ray out.
     """
 
-    xy_px: _Floats
-    weight: _Floats
+    xy_px: Floats
+    weight: Floats
 
 
 class Ground(NamedTuple):
@@ -52,10 +49,10 @@ class Ground(NamedTuple):
         (g, 3, 3) 1/m2, inverse covariances.
     """
 
-    position_m: _Floats
-    control: _Ints
-    control_m: _Floats
-    weight: _Floats
+    position_m: Floats
+    control: Ints
+    control_m: Floats
+    weight: Floats
 
 
 class Network(NamedTuple):
@@ -74,7 +71,7 @@ def linearise(
     point: int,
     image: int,
     measured: Measured,
-    position_m: _Floats,
+    position_m: Floats,
     images: Images,
     cameras: Cameras,
     out: Ray,
@@ -94,10 +91,10 @@ def add_to_point(
     place: int,
     n_images: int,
     camera: int,
-    column: _Ints,
-    normals: _Floats,
-    side: _Floats,
-    rows: _Floats,
+    column: Ints,
+    normals: Floats,
+    side: Floats,
+    rows: Floats,
 ) -> None:
     """Add a ray to N and n, and write its part of K (3, 6 n_images + k).
 
@@ -125,7 +122,7 @@ def add_to_point(
 
 
 @inlined_kernel
-def add_control(point: int, ground: Ground, normals: _Floats, side: _Floats) -> float:
+def add_control(point: int, ground: Ground, normals: Floats, side: Floats) -> float:
     """Add a point's control to N and n; its weighted square sum is returned."""
     control, square_sum = ground.control[point], 0.0
     if control < 0:
@@ -142,7 +139,7 @@ def add_control(point: int, ground: Ground, normals: _Floats, side: _Floats) -> 
 
 
 @inlined_kernel
-def factorise_point(normals: _Floats) -> bool:
+def factorise_point(normals: Floats) -> bool:
     """Lower Cholesky factor (3, 3) in place; false if the point is not determined."""
     a, b, c = normals[0, 0], normals[1, 1], normals[2, 2]
     if not (a > 0.0 and b > 0.0 and c > 0.0):
@@ -163,7 +160,7 @@ def factorise_point(normals: _Floats) -> bool:
 
 
 @inlined_kernel
-def solve_lower(lower: _Floats, rows: _Floats) -> None:
+def solve_lower(lower: Floats, rows: Floats) -> None:
     """L^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
         x = rows[0, j] / lower[0, 0]
@@ -173,7 +170,7 @@ def solve_lower(lower: _Floats, rows: _Floats) -> None:
 
 
 @inlined_kernel
-def solve_upper(lower: _Floats, rows: _Floats) -> None:
+def solve_upper(lower: Floats, rows: Floats) -> None:
     """L'^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
         z = rows[2, j] / lower[2, 2]
@@ -191,9 +188,9 @@ def normals_of_point(
     images: Images,
     cameras: Cameras,
     ray: Ray,
-    normals: _Floats,
-    side: _Floats,
-    rows: _Floats,
+    normals: Floats,
+    side: Floats,
+    rows: Floats,
 ) -> None:
     """Write N, n and K (3, 6 n + k) of a point."""
     first, n = groups.first_ray[point], groups.first_ray[point + 1] - groups.first_ray[point]

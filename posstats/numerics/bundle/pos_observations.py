@@ -12,8 +12,8 @@ frame, R <- exp([w]x) R.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.bundle.parameters import ParameterEffects
 from posstats.numerics.kernels.rotation import (
     AngleSystem,
@@ -24,7 +24,6 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 
-_Floats = NDArray[np.float64]
 _ROLL_PITCH_YAW = np.array([1, 0, 2])  # as phi, omega, kappa of Rx(omega) Ry(phi) Rz(kappa)
 
 
@@ -42,14 +41,14 @@ class PosObservations:
         Of the angles.
     """
 
-    antenna_m: _Floats
-    sigma_antenna_m: _Floats
-    angles_rad: _Floats
-    sigma_angles_rad: _Floats
+    antenna_m: Floats
+    sigma_antenna_m: Floats
+    angles_rad: Floats
+    sigma_angles_rad: Floats
     system: AngleSystem
 
     @property
-    def weight(self) -> _Floats:
+    def weight(self) -> Floats:
         """(n, 6) of the antenna positions, then the angles."""
         return np.concatenate([self.sigma_antenna_m, self.sigma_angles_rad], axis=1) ** -2.0
 
@@ -68,17 +67,17 @@ class LinearisedPos:
         (n, 6, k) by the additional parameters.
     """
 
-    residual: _Floats
-    by_pose: _Floats
-    by_common: _Floats
+    residual: Floats
+    by_pose: Floats
+    by_common: Floats
 
 
 def linearised_pos(
     observed: PosObservations,
-    ground_from_image: _Floats,
-    position_m: _Floats,
+    ground_from_image: Floats,
+    position_m: Floats,
     effects: ParameterEffects,
-    common: _Floats,
+    common: Floats,
 ) -> LinearisedPos:
     """Residuals and derivatives of the POS observations.
 
@@ -111,14 +110,14 @@ def linearised_pos(
     )
 
 
-def _values(index: NDArray[np.intp], common: _Floats) -> _Floats:
+def _values(index: Ints, common: Floats) -> Floats:
     """(3,) values of parameters, 0 of those that are not unknown."""
     return np.where(index >= 0, np.append(common, 0.0)[index], 0.0)
 
 
 def antenna_positions(
-    ground_from_image: _Floats, position_m: _Floats, lever_arm_m: _Floats
-) -> tuple[_Floats, _Floats, _Floats]:
+    ground_from_image: Floats, position_m: Floats, lever_arm_m: Floats
+) -> tuple[Floats, Floats, Floats]:
     """Antenna positions (n, 3) and derivatives (n, 3, 6), (n, 3, 3) by pose and lever arm."""
     arm = ground_from_image @ lever_arm_m
     identity = np.broadcast_to(np.eye(3), (len(arm), 3, 3))
@@ -126,8 +125,8 @@ def antenna_positions(
 
 
 def imu_angles(
-    ground_from_image: _Floats, boresight_rad: _Floats, system: AngleSystem
-) -> tuple[_Floats, _Floats, _Floats]:
+    ground_from_image: Floats, boresight_rad: Floats, system: AngleSystem
+) -> tuple[Floats, Floats, Floats]:
     """Angles (n, 3) of R R_B and derivatives (n, 3, 6), (n, 3, 3) by pose and boresight.
 
     `boresight_rad` (3,) is roll, pitch, yaw.
@@ -141,14 +140,14 @@ def imu_angles(
     return angles, np.concatenate([by_vector, np.zeros_like(by_vector)], axis=2), by_boresight
 
 
-def angles_by_rotation_vector(angles_rad: _Floats, system: AngleSystem) -> _Floats:
+def angles_by_rotation_vector(angles_rad: Floats, system: AngleSystem) -> Floats:
     """Derivatives (n, 3, 3) of angles (n, 3) by a rotation vector in the ground frame."""
     rotation = rotation_from_angles(angles_rad, system)
     derivatives = rotation_derivatives(angles_rad, system)
     return np.asarray(np.linalg.inv(_turns(derivatives, rotation[..., None, :, :])), dtype=float)
 
 
-def _turns(derivatives: _Floats, rotation: _Floats) -> _Floats:
+def _turns(derivatives: Floats, rotation: Floats) -> Floats:
     """Rotation vectors (..., 3, 3), in columns, of the derivatives (..., 3, 3, 3) by angles."""
     generator = derivatives @ np.swapaxes(rotation, -1, -2)
     vectors = np.stack([generator[..., 2, 1], generator[..., 0, 2], generator[..., 1, 0]], axis=-1)

@@ -12,8 +12,8 @@ for pairs of images of one point only: a selected inverse of the normal equation
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.bundle.point_groups import PointGroups
 from posstats.numerics.bundle.point_normals import (
     Ground,
@@ -27,9 +27,6 @@ from posstats.numerics.bundle.point_normals import (
 )
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.numerics.kernels.compiled import inlined_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 
 class Cofactors(NamedTuple):
@@ -45,9 +42,9 @@ class Cofactors(NamedTuple):
         (k, k).
     """
 
-    blocks: _Floats
-    border: _Floats
-    corner: _Floats
+    blocks: Floats
+    border: Floats
+    corner: Floats
 
 
 class PointPrecision(NamedTuple):
@@ -61,12 +58,12 @@ class PointPrecision(NamedTuple):
         (m, 2) of the rays' x, y; NaN of a ray that is taken out.
     """
 
-    covariance_m2: _Floats
-    redundancy: _Floats
+    covariance_m2: Floats
+    redundancy: Floats
 
 
 @inlined_kernel
-def _gather(members: _Ints, pairs: _Ints, cofactors: Cofactors, local: _Floats) -> None:
+def _gather(members: Ints, pairs: Ints, cofactors: Cofactors, local: Floats) -> None:
     """Write the covariance (6 n + k)^2 of a group's images and of the camera unknowns."""
     n, n_common, at = len(members), cofactors.corner.shape[0], 0
     for i in range(n):
@@ -88,14 +85,14 @@ def _gather(members: _Ints, pairs: _Ints, cofactors: Cofactors, local: _Floats) 
 
 @inlined_kernel
 def _shift_covariance(
-    d: _Floats,
+    d: Floats,
     at: int,
-    local: _Floats,
-    shared: _Floats,
+    local: Floats,
+    shared: Floats,
     point: int,
-    covariance: _Floats,
-    turned: _Floats,
-    out: _Floats,
+    covariance: Floats,
+    turned: Floats,
+    out: Floats,
 ) -> None:
     """Write cov(M s + dX) (3, 3), M = [[d]x, -1]: what a ray sees of its image and its point.
 
@@ -123,9 +120,9 @@ def _camera_variance(
     at: int,
     n_images: int,
     camera: int,
-    column: _Ints,
-    local: _Floats,
-    shared: _Floats,
+    column: Ints,
+    local: Floats,
+    shared: Floats,
 ) -> float:
     """What the camera's unknowns add to the variance of an adjusted image coordinate."""
     b, d, variance = ray.by_ground, ray.offset, 0.0
@@ -147,9 +144,7 @@ def _camera_variance(
 
 
 @inlined_kernel
-def _propagate(
-    lower: _Floats, rows: _Floats, local: _Floats, shared: _Floats, out: _Floats
-) -> None:
+def _propagate(lower: Floats, rows: Floats, local: Floats, shared: Floats, out: Floats) -> None:
     """Write U to `rows` (K before), U C to `shared` and cov X to `out`."""
     width = rows.shape[1]
     out[:] = 0.0
@@ -179,14 +174,14 @@ def _point(
     ground: Ground,
     images: Images,
     cameras: Cameras,
-    local: _Floats,
+    local: Floats,
     ray: Ray,
-    normals: _Floats,
-    side: _Floats,
-    rows: _Floats,
-    shared: _Floats,
-    turned: _Floats,
-    seen: _Floats,
+    normals: Floats,
+    side: Floats,
+    rows: Floats,
+    shared: Floats,
+    turned: Floats,
+    seen: Floats,
     out: PointPrecision,
 ) -> None:
     """Write the results of one point and its rays."""

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.numerics.bundle.parameters import CommonParameter, Exposures
 from posstats.numerics.bundle.pos_observations import PosObservations, angles_by_rotation_vector
 from posstats.numerics.kernels.rotation import AngleSystem, angles_from_rotation
 from posstats.numerics.solvers.arrow import SelectedInverse
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +27,9 @@ class Control:
         (g, 3, 3).
     """
 
-    point: _Ints
-    position_m: _Floats
-    covariance_m2: _Floats
+    point: Ints
+    position_m: Floats
+    covariance_m2: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,15 +63,15 @@ class BundleProblem:
     """
 
     exposures: Exposures
-    ground_from_image: _Floats
-    position_m: _Floats
-    distance_px: _Floats
-    mm_per_px: _Floats
-    point: _Ints
-    image: _Ints
-    xy_px: _Floats
-    sigma_px: _Floats
-    ground_m: _Floats
+    ground_from_image: Floats
+    position_m: Floats
+    distance_px: Floats
+    mm_per_px: Floats
+    point: Ints
+    image: Ints
+    xy_px: Floats
+    sigma_px: Floats
+    ground_m: Floats
     pos: PosObservations
     control: Control
     parameters: tuple[CommonParameter, ...] = ()
@@ -136,19 +133,19 @@ class AdjustedBundle:
         Of the angles.
     """
 
-    ground_from_image: _Floats
-    position_m: _Floats
-    ground_m: _Floats
-    common: _Floats
+    ground_from_image: Floats
+    position_m: Floats
+    ground_m: Floats
+    common: Floats
     inverse: SelectedInverse
-    ground_covariance_m2: _Floats
-    residual_px: _Floats
-    redundancy_px: _Floats
-    residual_pos: _Floats
-    redundancy_pos: _Floats
-    residual_control_m: _Floats
-    redundancy_control: _Floats
-    rejected: NDArray[np.bool_]
+    ground_covariance_m2: Floats
+    residual_px: Floats
+    redundancy_px: Floats
+    residual_pos: Floats
+    redundancy_pos: Floats
+    residual_control_m: Floats
+    redundancy_control: Floats
+    rejected: Bools
     groups: Mapping[str, ObservationGroup]
     dof: int
     n_iterations: int
@@ -165,21 +162,21 @@ class AdjustedBundle:
         return float(np.sqrt(self.square_sum / self.dof)) if self.dof > 0 else float("nan")
 
     @property
-    def angles_rad(self) -> _Floats:
+    def angles_rad(self) -> Floats:
         """(n, 3) omega, phi, kappa."""
         return angles_from_rotation(self.ground_from_image, self.system)
 
     @cached_property
-    def orientation_covariance(self) -> _Floats:
+    def orientation_covariance(self) -> Floats:
         """(n, 6, 6) of omega, phi, kappa, rad, and of the projection centre, m."""
         image = np.arange(len(self.position_m))
         by_pose = np.broadcast_to(np.eye(6), (len(image), 6, 6)).copy()
         by_pose[:, :3, :3] = angles_by_rotation_vector(self.angles_rad, self.system)
         own = self.inverse.blocks(image, image)
-        covariance: _Floats = by_pose @ own @ np.swapaxes(by_pose, 1, 2)
+        covariance: Floats = by_pose @ own @ np.swapaxes(by_pose, 1, 2)
         return covariance
 
     @property
-    def common_covariance(self) -> _Floats:
+    def common_covariance(self) -> Floats:
         """(k, k) of the additional parameters."""
         return self.inverse.corner

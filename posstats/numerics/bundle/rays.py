@@ -16,13 +16,10 @@ components come first, then three of the projection centre.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.algebra import cross
 from posstats.numerics.kernels.compiled import inlined_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 CAMERA_PARAMETERS = (
     "camera_c", "camera_x0", "camera_y0",
@@ -45,9 +42,9 @@ class Images(NamedTuple):
         (n,) index.
     """
 
-    ground_from_image: _Floats
-    position_m: _Floats
-    camera: _Ints
+    ground_from_image: Floats
+    position_m: Floats
+    camera: Ints
 
 
 class Cameras(NamedTuple):
@@ -67,11 +64,11 @@ class Cameras(NamedTuple):
         (c, 11) among which unknowns of the adjustment they are; -1: no unknown.
     """
 
-    distance_px: _Floats
-    mm_per_px: _Floats
+    distance_px: Floats
+    mm_per_px: Floats
     radius_mm: float
-    value: _Floats
-    column: _Ints
+    value: Floats
+    column: Ints
 
 
 class Ray(NamedTuple):
@@ -92,10 +89,10 @@ class Ray(NamedTuple):
         (2, 11) px by `CAMERA_PARAMETERS`, or (2, 0): not wanted.
     """
 
-    residual: _Floats
-    offset: _Floats
-    by_ground: _Floats
-    by_camera: _Floats
+    residual: Floats
+    offset: Floats
+    by_ground: Floats
+    by_camera: Floats
 
 
 @inlined_kernel
@@ -110,7 +107,7 @@ def new_ray(n_common: int) -> Ray:
 
 @inlined_kernel
 def observe(
-    ground_m: _Floats, point: int, image: int, images: Images, cameras: Cameras, out: Ray
+    ground_m: Floats, point: int, image: int, images: Images, cameras: Cameras, out: Ray
 ) -> bool:
     """Write a ray's image point (as residual) and derivatives.
 
@@ -194,8 +191,8 @@ def _write(out: Ray, parameter: int, x: float, y: float) -> None:
 
 @kernel
 def project_rays(
-    ground_m: _Floats, point: _Ints, image: _Ints, images: Images, cameras: Cameras
-) -> tuple[_Floats, _Floats, _Floats, _Floats]:
+    ground_m: Floats, point: Ints, image: Ints, images: Images, cameras: Cameras
+) -> tuple[Floats, Floats, Floats, Floats]:
     """Image coordinates of rays and all their derivatives, NaN where behind the camera.
 
     Parameters

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.numerics.bundle.ground_points import intersect_points, move_points, ray_residuals
 from posstats.numerics.bundle.normals import Reduced, accumulate
 from posstats.numerics.bundle.parameters import ParameterEffects, parameter_effects
@@ -21,8 +21,6 @@ from posstats.numerics.kernels.rotation import rotation_from_vector
 from posstats.numerics.solvers.arrow import ArrowMatrix, SelectedInverse, factorised
 from posstats.numerics.solvers.levels import Levels, breadth_first_levels
 
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 _T = TypeVar("_T")
 
 
@@ -30,10 +28,10 @@ _T = TypeVar("_T")
 class State:
     """Values of all unknowns: rotations, projection centres, points by group, parameters."""
 
-    ground_from_image: _Floats
-    position_m: _Floats
-    ground_m: _Floats
-    common: _Floats
+    ground_from_image: Floats
+    position_m: Floats
+    ground_m: Floats
+    common: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,12 +60,12 @@ class Equations:
 
     state: State
     matrix: ArrowMatrix
-    images: _Floats
-    common: _Floats
+    images: Floats
+    common: Floats
     square_sums: tuple[float, float, float, float, float]
     gain: float
     damping: float
-    determined: NDArray[np.bool_]
+    determined: Bools
     pos: LinearisedPos
 
     @property
@@ -88,10 +86,10 @@ class BundleSystem:
     rays: GroupedRays
     levels: Levels
     effects: ParameterEffects
-    xy_px: _Floats
-    weight: _Floats
-    control: _Ints
-    control_weight: _Floats
+    xy_px: Floats
+    weight: Floats
+    control: Ints
+    control_weight: Floats
 
     @classmethod
     def of(cls, problem: BundleProblem) -> "BundleSystem":
@@ -130,7 +128,7 @@ class BundleSystem:
         n_points = len(self.rays.point)
         return 6 * len(problem.position_m) + 3 * n_points + len(problem.parameters)
 
-    def with_weight(self, weight: _Floats) -> "BundleSystem":
+    def with_weight(self, weight: Floats) -> "BundleSystem":
         """The same with other weights (m,) of the rays, in the order of the groups."""
         return replace(self, weight=weight)
 
@@ -151,7 +149,7 @@ class BundleSystem:
         reduced: Reduced,
         sums: tuple[float, float, float],
         damping: float,
-        kept: NDArray[np.bool_],
+        kept: Bools,
     ) -> Equations:
         """Add what POS and the parameters' priors say to the sums of the kernel."""
         pos = linearised_pos(
@@ -254,7 +252,7 @@ class BundleSystem:
         _in_threads(propagate, self.rays.parts)
         return inverse, out
 
-    def residuals(self, state: State) -> _Floats:
+    def residuals(self, state: State) -> Floats:
         """(m, 2) computed minus measured, px, of the rays by group; NaN behind a camera."""
         residual, network = np.empty((len(self.rays.ray), 2)), self._network(state)
 
@@ -291,7 +289,7 @@ class BundleSystem:
             np.zeros(k),
         )
 
-    def _matrix(self, reduced: Reduced, pos: LinearisedPos, prior: _Floats) -> ArrowMatrix:
+    def _matrix(self, reduced: Reduced, pos: LinearisedPos, prior: Floats) -> ArrowMatrix:
         """All observations' normal equations; the kernel gives upper triangles."""
         n, _, k = pos.by_common.shape
         own = self.rays.first == self.rays.second
@@ -306,7 +304,7 @@ class BundleSystem:
         return ArrowMatrix(self.rays.first, self.rays.second, blocks, border, corner)
 
 
-def _symmetric(upper: _Floats) -> _Floats:
+def _symmetric(upper: Floats) -> Floats:
     """(..., b, b) with both triangles, of upper ones."""
     upper = np.triu(upper)
     return upper + np.swapaxes(np.triu(upper, 1), -1, -2)

@@ -7,11 +7,10 @@ few numbers cost more than the work.
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.numerics.kernels.compiled import inner_kernel, summing_kernel
 
-_Floats = NDArray[np.float64]
 Vector = Any  # three numbers: a row of an array, or a tuple
 Matrix = Any  # three such rows
 Six = Any  # a tuple of six numbers, which stays in registers
@@ -39,7 +38,7 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 @summing_kernel
-def sum_of_products(a: _Floats, b: _Floats) -> float:
+def sum_of_products(a: Floats, b: Floats) -> float:
     """Scalar product of two arrays, added up in any order."""
     total = 0.0
     for i in range(len(a)):
@@ -48,7 +47,7 @@ def sum_of_products(a: _Floats, b: _Floats) -> float:
 
 
 @inner_kernel
-def solve_normals(normals: _Floats, gradient: _Floats, damping: float, step: _Floats) -> float:
+def solve_normals(normals: Floats, gradient: Floats, damping: float, step: Floats) -> float:
     """Write the step -(N + damping diag N)^-1 g; the smallest pivot of the scaled matrix.
 
     Cholesky's method on the lower triangle of N (n, n), scaled to a unit diagonal. Returns 0
@@ -75,7 +74,7 @@ def solve_normals(normals: _Floats, gradient: _Floats, damping: float, step: _Fl
 
 
 @inner_kernel
-def _substitute(factor: _Floats, scale: _Floats, gradient: _Floats, step: _Floats) -> None:
+def _substitute(factor: Floats, scale: Floats, gradient: Floats, step: Floats) -> None:
     """Write -S^-1 (L L')^-1 S^-1 g, with L the lower triangle `factor` and S the scale."""
     n = len(gradient)
     for i in range(n):
@@ -90,7 +89,7 @@ def _substitute(factor: _Floats, scale: _Floats, gradient: _Floats, step: _Float
 
 
 @inner_kernel
-def six(row: _Floats, first: int) -> Six:
+def six(row: Floats, first: int) -> Six:
     """Six numbers of a row, from `first` on."""
     return (
         row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5]
@@ -106,7 +105,7 @@ def _plus(c: Six, f: float, w: Six) -> Six:
 
 
 @inner_kernel
-def add_products(rows: _Floats, n: int, width: int, matrix: _Floats, sign: float) -> None:
+def add_products(rows: Floats, n: int, width: int, matrix: Floats, sign: float) -> None:
     """Blocks of 6 x 6 on and above the diagonal of matrix += sign rows' rows.
 
     rows: (n, width) leading part. Two rows of a block at a time are summed in registers.

@@ -9,12 +9,10 @@ the collinearity equations (equation 1 of the second source paper). Arrays only,
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 _Vector = tuple[float, float, float]
 
 INTERSECTED, FEW_RAYS, PARALLEL, BEHIND_CAMERA, NOT_CONVERGED = range(5)
@@ -26,7 +24,7 @@ _CONVERGED = 1e-10  # last step over the distance of the point
 
 
 @inner_kernel
-def _transposed_times(r: _Floats, x: float, y: float, z: float) -> _Vector:
+def _transposed_times(r: Floats, x: float, y: float, z: float) -> _Vector:
     """R^T (x, y, z)."""
     return (
         r[0, 0] * x + r[1, 0] * y + r[2, 0] * z,
@@ -36,7 +34,7 @@ def _transposed_times(r: _Floats, x: float, y: float, z: float) -> _Vector:
 
 
 @inner_kernel
-def _from_centre(ground: _Floats, centre: _Floats, ground_from_image: _Floats) -> _Vector:
+def _from_centre(ground: Floats, centre: Floats, ground_from_image: Floats) -> _Vector:
     """The point in the camera, u = R^T (X - S)."""
     return _transposed_times(
         ground_from_image, ground[0] - centre[0], ground[1] - centre[1], ground[2] - centre[2]
@@ -45,7 +43,7 @@ def _from_centre(ground: _Floats, centre: _Floats, ground_from_image: _Floats) -
 
 @inner_kernel
 def _projection_gradient(
-    ground_from_image: _Floats, u: _Vector, distance: float, out: _Floats
+    ground_from_image: Floats, u: _Vector, distance: float, out: Floats
 ) -> None:
     """d(x, y) / d(X, Y, Z), written to out (2, 3); u is the point in the camera."""
     scale = -distance / u[2]
@@ -58,13 +56,13 @@ def _projection_gradient(
 
 @kernel
 def project(
-    ground_m: _Floats,
-    point: _Ints,
-    image: _Ints,
-    ground_from_image: _Floats,
-    position_m: _Floats,
-    distance_px: _Floats,
-) -> _Floats:
+    ground_m: Floats,
+    point: Ints,
+    image: Ints,
+    ground_from_image: Floats,
+    position_m: Floats,
+    distance_px: Floats,
+) -> Floats:
     """Image coordinates (m, 2) x, y in px of ground points, NaN where behind the camera.
 
     Parameters
@@ -92,14 +90,14 @@ def project(
 
 @kernel
 def project_derivatives(
-    ground_m: _Floats,
-    point: _Ints,
-    image: _Ints,
-    ground_from_image: _Floats,
-    rotation_derivatives: _Floats,
-    position_m: _Floats,
-    distance_px: _Floats,
-) -> tuple[_Floats, _Floats, _Floats]:
+    ground_m: Floats,
+    point: Ints,
+    image: Ints,
+    ground_from_image: Floats,
+    rotation_derivatives: Floats,
+    position_m: Floats,
+    distance_px: Floats,
+) -> tuple[Floats, Floats, Floats]:
     """Image coordinates and their derivatives, NaN where a point is behind the camera.
 
     Parameters are those of `project`, with
@@ -137,7 +135,7 @@ def project_derivatives(
 
 
 @inner_kernel
-def _solved(matrix: _Floats, right: _Floats, out: _Floats) -> None:
+def _solved(matrix: Floats, right: Floats, out: Floats) -> None:
     """Solve the symmetric 3 x 3 system by Cholesky's decomposition; NaN if not positive."""
     a, b, c = matrix[0, 0], matrix[0, 1], matrix[0, 2]
     l11 = np.sqrt(a)
@@ -154,7 +152,7 @@ def _solved(matrix: _Floats, right: _Floats, out: _Floats) -> None:
 
 
 @inner_kernel
-def _direction(ground_from_image: _Floats, vector: _Floats) -> _Vector:
+def _direction(ground_from_image: Floats, vector: Floats) -> _Vector:
     """Unit direction of a ray in the ground frame."""
     r, x, y, z = ground_from_image, vector[0], vector[1], vector[2]
     norm = np.sqrt(x * x + y * y + z * z)
@@ -167,7 +165,7 @@ def _direction(ground_from_image: _Floats, vector: _Floats) -> _Vector:
 
 @inner_kernel
 def _are_parallel(
-    first: int, last: int, vectors: _Floats, image: _Ints, ground_from_image: _Floats
+    first: int, last: int, vectors: Floats, image: Ints, ground_from_image: Floats
 ) -> bool:
     """Whether no two of the rays meet at an angle of at least `_MIN_ANGLE_RAD`."""
     for k in range(first, last):
@@ -186,11 +184,11 @@ def _are_parallel(
 def _nearest_to_rays(
     first: int,
     last: int,
-    vectors: _Floats,
-    image: _Ints,
-    ground_from_image: _Floats,
-    position_m: _Floats,
-    out: _Floats,
+    vectors: Floats,
+    image: Ints,
+    ground_from_image: Floats,
+    position_m: Floats,
+    out: Floats,
 ) -> None:
     """The point of least squared distances to the rays: sum (I - d d^T) (X - S) = 0.
 
@@ -210,14 +208,14 @@ def _nearest_to_rays(
 
 @inner_kernel
 def _image_step(
-    ground: _Floats,
+    ground: Floats,
     first: int,
     last: int,
-    vectors: _Floats,
-    image: _Ints,
-    ground_from_image: _Floats,
-    position_m: _Floats,
-    step: _Floats,
+    vectors: Floats,
+    image: Ints,
+    ground_from_image: Floats,
+    position_m: Floats,
+    step: Floats,
 ) -> bool:
     """Write a Gauss-Newton step on the image residuals; false if the point is behind a camera."""
     normals, right, gradient = np.zeros((3, 3)), np.zeros(3), np.empty((2, 3))
@@ -246,13 +244,13 @@ def _image_step(
 
 @inner_kernel
 def _refined(
-    ground: _Floats,
+    ground: Floats,
     first: int,
     last: int,
-    vectors: _Floats,
-    image: _Ints,
-    ground_from_image: _Floats,
-    position_m: _Floats,
+    vectors: Floats,
+    image: Ints,
+    ground_from_image: Floats,
+    position_m: Floats,
 ) -> int:
     """Gauss-Newton from `ground` (changed in place); returns the point's status."""
     step = np.empty(3)
@@ -275,13 +273,13 @@ def _refined(
 
 @kernel
 def intersect_rays(
-    vectors: _Floats,
-    image: _Ints,
-    first: _Ints,
-    last: _Ints,
-    ground_from_image: _Floats,
-    position_m: _Floats,
-) -> tuple[_Floats, _Ints]:
+    vectors: Floats,
+    image: Ints,
+    first: Ints,
+    last: Ints,
+    ground_from_image: Floats,
+    position_m: Floats,
+) -> tuple[Floats, Ints]:
     """Forward intersection of k points, least squares of the image residuals.
 
     Gauss-Newton from the point nearest to the rays, in coordinates relative to the first
@@ -326,7 +324,7 @@ def intersect_rays(
 
 
 @inner_kernel
-def _inverse_normals(first: int, last: int, by_ground: _Floats, out: _Floats) -> None:
+def _inverse_normals(first: int, last: int, by_ground: Floats, out: Floats) -> None:
     """(J'J)^-1 of one point's rays, J = by_ground[first:last], written to out (3, 3)."""
     normals, unit = np.zeros((3, 3)), np.zeros(3)
     for k in range(first, last):
@@ -341,9 +339,7 @@ def _inverse_normals(first: int, last: int, by_ground: _Floats, out: _Floats) ->
 
 
 @inner_kernel
-def _add_variance(
-    cofactors: _Floats, by_ground: _Floats, dx: float, dy: float, out: _Floats
-) -> None:
+def _add_variance(cofactors: Floats, by_ground: Floats, dx: float, dy: float, out: Floats) -> None:
     """Add the covariance of a point whose ray is shifted in the image by dx, dy (one sigma)."""
     x, y, z = (
         by_ground[0, 0] * dx + by_ground[1, 0] * dy,
@@ -358,13 +354,13 @@ def _add_variance(
 
 @kernel
 def intersection_precision(
-    by_angles: _Floats,
-    by_ground: _Floats,
-    offsets: _Ints,
-    image: _Ints,
-    sigma_angles_rad: _Floats,
-    sigma_position_m: _Floats,
-) -> tuple[_Floats, _Floats]:
+    by_angles: Floats,
+    by_ground: Floats,
+    offsets: Ints,
+    image: Ints,
+    sigma_angles_rad: Floats,
+    sigma_position_m: Floats,
+) -> tuple[Floats, Floats]:
     """Cofactors of k intersected points, and what the orientations' errors add.
 
     With J = d(image)/d(ground), B = d(image)/d(orientation), and second derivatives times

@@ -15,13 +15,10 @@ term by term; the linearised equation (1) of the first source paper holds to a f
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.algebra import Vector, dot, rotated
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 
 @inner_kernel
@@ -48,7 +45,7 @@ def parallax_gradients(a: Vector, b: Vector, base: Vector) -> tuple[float, Vecto
     return ratio - b[1], da, db, dbase
 
 
-def base_frames(base_m: _Floats) -> _Floats:
+def base_frames(base_m: Floats) -> Floats:
     """Rotations (..., 3, 3) base_from_ground about Z that turn the base's X-Y direction onto +X.
 
     Parameters
@@ -69,13 +66,13 @@ def base_frames(base_m: _Floats) -> _Floats:
 
 @kernel
 def y_parallax(
-    left_vectors: _Floats,
-    right_vectors: _Floats,
-    offsets: _Ints,
-    base_from_left: _Floats,
-    base_from_right: _Floats,
-    base: _Floats,
-) -> _Floats:
+    left_vectors: Floats,
+    right_vectors: Floats,
+    offsets: Ints,
+    base_from_left: Floats,
+    base_from_right: Floats,
+    base: Floats,
+) -> Floats:
     """y-parallax of every point pair, px at image scale.
 
     Parameters
@@ -100,16 +97,16 @@ def y_parallax(
 
 @kernel
 def y_parallax_derivatives(
-    vectors: _Floats,
-    left_ray: _Ints,
-    right_ray: _Ints,
-    pair: _Ints,
-    base_from_left: _Floats,
-    base_from_right: _Floats,
-    left_derivatives: _Floats,
-    right_derivatives: _Floats,
-    base: _Floats,
-) -> tuple[_Floats, _Floats, _Floats, _Floats, _Floats]:
+    vectors: Floats,
+    left_ray: Ints,
+    right_ray: Ints,
+    pair: Ints,
+    base_from_left: Floats,
+    base_from_right: Floats,
+    left_derivatives: Floats,
+    right_derivatives: Floats,
+    base: Floats,
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """y-parallax and its derivatives for every point pair.
 
     Parameters

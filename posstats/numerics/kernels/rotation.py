@@ -8,16 +8,16 @@ triples are always ordered (omega, phi, kappa), in radians, whatever the system.
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from posstats.arrays import Floats
 
 AngleSystem = Literal["omega-phi-kappa", "phi-omega-kappa"]
 ANGLE_NAMES = ("omega", "phi", "kappa")
 CAMERA_ANGLE_NAMES = ("pitch", "roll", "yaw")
 
-_Floats = NDArray[np.float64]
 
-
-def axis_rotation(axis: int, angle_rad: _Floats) -> _Floats:
+def axis_rotation(axis: int, angle_rad: Floats) -> Floats:
     """Rotation (..., 3, 3) by `angle_rad` (...) about coordinate axis 0, 1 or 2, right-handed."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
@@ -29,7 +29,7 @@ def axis_rotation(axis: int, angle_rad: _Floats) -> _Floats:
     return rotation
 
 
-def _factors(angles_rad: _Floats, system: AngleSystem) -> list[tuple[int, int, float, _Floats]]:
+def _factors(angles_rad: Floats, system: AngleSystem) -> list[tuple[int, int, float, Floats]]:
     """Elementary rotations of a system, left to right: (angle index, axis, sign, matrix)."""
     if system == "omega-phi-kappa":
         order = [(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0)]
@@ -42,7 +42,7 @@ def _factors(angles_rad: _Floats, system: AngleSystem) -> list[tuple[int, int, f
     ]
 
 
-def rotation_from_angles(angles_rad: ArrayLike, system: AngleSystem) -> _Floats:
+def rotation_from_angles(angles_rad: ArrayLike, system: AngleSystem) -> Floats:
     """Rotation matrix ground_from_image of an angle triple.
 
     Parameters
@@ -63,7 +63,7 @@ def rotation_from_angles(angles_rad: ArrayLike, system: AngleSystem) -> _Floats:
     return first @ second @ third
 
 
-def angles_from_rotation(ground_from_image: ArrayLike, system: AngleSystem) -> _Floats:
+def angles_from_rotation(ground_from_image: ArrayLike, system: AngleSystem) -> Floats:
     """Angle triples (..., 3) omega, phi, kappa in radians of rotation matrices (..., 3, 3).
 
     Inverse of `rotation_from_angles`; phi (omega for ``phi-omega-kappa``) is in [-pi/2, pi/2].
@@ -80,7 +80,7 @@ def angles_from_rotation(ground_from_image: ArrayLike, system: AngleSystem) -> _
     return np.stack([omega, phi, kappa], axis=-1)
 
 
-def rotation_derivatives(angles_rad: ArrayLike, system: AngleSystem) -> _Floats:
+def rotation_derivatives(angles_rad: ArrayLike, system: AngleSystem) -> Floats:
     """Derivatives of the rotation matrix with respect to omega, phi and kappa.
 
     Returns
@@ -97,12 +97,12 @@ def rotation_derivatives(angles_rad: ArrayLike, system: AngleSystem) -> _Floats:
     return derivatives
 
 
-def _axis_generator(axis: int) -> _Floats:
+def _axis_generator(axis: int) -> Floats:
     """d/da of the axis rotation at a = 0 (a skew matrix)."""
     return skew(np.eye(3)[axis])
 
 
-def skew(vector: ArrayLike) -> _Floats:
+def skew(vector: ArrayLike) -> Floats:
     """Cross-product matrix (..., 3, 3) of vectors (..., 3): skew(a) b = a x b."""
     v = np.asarray(vector, dtype=float)
     matrix = np.zeros((*v.shape, 3))
@@ -112,7 +112,7 @@ def skew(vector: ArrayLike) -> _Floats:
     return matrix
 
 
-def rotation_from_vector(vector_rad: ArrayLike) -> _Floats:
+def rotation_from_vector(vector_rad: ArrayLike) -> Floats:
     """Rotation exp([e]x) (..., 3, 3) of rotation vectors e (..., 3) in radians (Rodrigues)."""
     e = np.asarray(vector_rad, dtype=float)
     angle = np.linalg.norm(e, axis=-1)[..., None, None]
@@ -120,11 +120,11 @@ def rotation_from_vector(vector_rad: ArrayLike) -> _Floats:
     # sinc keeps full precision at angle 0: np.sinc(x) = sin(pi x) / (pi x)
     first = np.sinc(angle / np.pi)
     second = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
-    rotation: _Floats = np.eye(3) + first * generator + second * (generator @ generator)
+    rotation: Floats = np.eye(3) + first * generator + second * (generator @ generator)
     return rotation
 
 
-def vector_from_rotation(rotation: ArrayLike) -> _Floats:
+def vector_from_rotation(rotation: ArrayLike) -> Floats:
     """Rotation vectors e (..., 3) in radians with exp([e]x) = rotation, |e| < pi."""
     r = np.asarray(rotation, dtype=float)
     axis = 0.5 * np.stack(
@@ -138,11 +138,11 @@ def vector_from_rotation(rotation: ArrayLike) -> _Floats:
     sine = np.linalg.norm(axis, axis=-1)
     cosine = 0.5 * (np.trace(r, axis1=-2, axis2=-1) - 1.0)
     angle = np.arctan2(sine, cosine)
-    vector: _Floats = axis / np.sinc(angle / np.pi)[..., None]
+    vector: Floats = axis / np.sinc(angle / np.pi)[..., None]
     return vector
 
 
-def wrapped(angle_rad: ArrayLike) -> _Floats:
+def wrapped(angle_rad: ArrayLike) -> Floats:
     """Angles reduced to [-pi, pi)."""
-    reduced: _Floats = (np.asarray(angle_rad, dtype=float) + np.pi) % (2.0 * np.pi) - np.pi
+    reduced: Floats = (np.asarray(angle_rad, dtype=float) + np.pi) % (2.0 * np.pi) - np.pi
     return reduced

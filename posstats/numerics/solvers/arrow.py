@@ -22,14 +22,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
+from posstats.arrays import Bools, Floats, Ints
 from posstats.errors import UndeterminedError
 from posstats.numerics.solvers.levels import Levels
-
-_Floats = NDArray[np.float64]
-_Ints = NDArray[np.intp]
 
 # Smallest pivot, of a matrix scaled to a unit diagonal, that is not rounding alone.
 SINGULAR_PIVOT = 1e-12
@@ -55,13 +52,13 @@ class ArrowMatrix:
         (k, k).
     """
 
-    first: _Ints
-    second: _Ints
-    blocks: _Floats
-    border: _Floats
-    corner: _Floats
+    first: Ints
+    second: Ints
+    blocks: Floats
+    border: Floats
+    corner: Floats
 
-    def scaled(self, images: _Floats, common: _Floats) -> "ArrowMatrix":
+    def scaled(self, images: Floats, common: Floats) -> "ArrowMatrix":
         """Rows and columns multiplied by (n, b) and (k,) factors."""
         rows, columns = images[self.first][:, :, None], images[self.second][:, None, :]
         return ArrowMatrix(
@@ -72,14 +69,14 @@ class ArrowMatrix:
             self.corner * common[:, None] * common,
         )
 
-    def diagonal(self) -> tuple[_Floats, _Floats]:
+    def diagonal(self) -> tuple[Floats, Floats]:
         """(n, b) and (k,)."""
         own = self.first == self.second
         images = np.zeros(self.border.shape[:2])
         images[self.first[own]] = np.diagonal(self.blocks[own], axis1=1, axis2=2)
         return images, np.diagonal(self.corner).copy()
 
-    def plus_diagonal(self, images: _Floats, common: _Floats) -> "ArrowMatrix":
+    def plus_diagonal(self, images: Floats, common: Floats) -> "ArrowMatrix":
         """The matrix with (n, b) and (k,) added to its diagonal."""
         own = self.first == self.second
         blocks = self.blocks.copy()
@@ -108,12 +105,12 @@ class SelectedInverse:
     """
 
     levels: Levels
-    within: tuple[_Floats, ...]
-    following: tuple[_Floats, ...]
-    border: _Floats
-    corner: _Floats
+    within: tuple[Floats, ...]
+    following: tuple[Floats, ...]
+    border: Floats
+    corner: Floats
 
-    def blocks(self, first: _Ints, second: _Ints) -> _Floats:
+    def blocks(self, first: Ints, second: Ints) -> Floats:
         """(P, b, b) blocks of pairs (P,) of images of the same or of neighbouring levels."""
         b = self.border.shape[1]
         result = np.empty((len(first), b, b))
@@ -129,11 +126,11 @@ class SelectedInverse:
 
 
 def _by_level(
-    level: _Ints,
-    between: NDArray[np.bool_],
-    within: tuple[_Floats, ...],
-    following: tuple[_Floats, ...],
-) -> Iterator[tuple[_Ints, _Floats]]:
+    level: Ints,
+    between: Bools,
+    within: tuple[Floats, ...],
+    following: tuple[Floats, ...],
+) -> Iterator[tuple[Ints, Floats]]:
     """Which pairs (indices) are inside, or lead on from, which level's matrix."""
     for kind, sources in ((False, within), (True, following)):
         chosen = np.flatnonzero(between == kind)
@@ -161,12 +158,12 @@ class ArrowFactor:
     """
 
     levels: Levels
-    scale_images: _Floats
-    scale_common: _Floats
-    lower: tuple[_Floats, ...]
-    coupling: tuple[_Floats, ...]
+    scale_images: Floats
+    scale_common: Floats
+    lower: tuple[Floats, ...]
+    coupling: tuple[Floats, ...]
 
-    def solve(self, images: _Floats, common: _Floats) -> tuple[_Floats, _Floats]:
+    def solve(self, images: Floats, common: Floats) -> tuple[Floats, Floats]:
         """The solution (n, b, q), (k, q) for right-hand sides of these shapes, q columns."""
         n, b, q = images.shape
         k = len(common)
@@ -197,9 +194,9 @@ class ArrowFactor:
         scales = [*np.split(scale, b * self.levels.offsets[1:-1]), np.empty(0)]
         corner = _inverse_square(self.lower[-1])
         after = corner
-        within: list[_Floats] = []
-        following: list[_Floats] = []
-        border: list[_Floats] = []
+        within: list[Floats] = []
+        following: list[Floats] = []
+        border: list[Floats] = []
         for at in range(len(self.coupling) - 1, -1, -1):
             g = _solved(self.lower[at], self.coupling[at], transposed=True)
             onward = -(g @ after)
@@ -246,12 +243,12 @@ def factorised(matrix: ArrowMatrix, levels: Levels) -> ArrowFactor:
 
 def _factors(
     matrix: ArrowMatrix, levels: Levels, smallest_pivot: float
-) -> tuple[tuple[_Floats, ...], tuple[_Floats, ...]] | None:
+) -> tuple[tuple[Floats, ...], tuple[Floats, ...]] | None:
     """Factors and couplings of `ArrowFactor`; None if a pivot is too small."""
     own, next_level = _dense_levels(matrix, levels)
     k = len(matrix.corner)
-    lower: list[_Floats] = []
-    couplings: list[_Floats] = []
+    lower: list[Floats] = []
+    couplings: list[Floats] = []
     corner = matrix.corner
     before = np.zeros((0, len(own[0]) + k))
     for at, (diagonal, onward) in enumerate(zip(own, next_level, strict=True)):
@@ -272,7 +269,7 @@ def _factors(
     return None if factor is None else ((*lower, factor), tuple(couplings))
 
 
-def _dense_levels(matrix: ArrowMatrix, levels: Levels) -> tuple[list[_Floats], list[_Floats]]:
+def _dense_levels(matrix: ArrowMatrix, levels: Levels) -> tuple[list[Floats], list[Floats]]:
     """A_ll (both triangles) and A_l,l+1 of every level."""
     b = matrix.blocks.shape[1]
     size = np.append(np.diff(levels.offsets), 0)
@@ -297,7 +294,7 @@ def _dense_levels(matrix: ArrowMatrix, levels: Levels) -> tuple[list[_Floats], l
     )
 
 
-def _cholesky(matrix: _Floats, smallest_pivot: float) -> _Floats | None:
+def _cholesky(matrix: Floats, smallest_pivot: float) -> Floats | None:
     """Lower factor (Fortran order), None if a pivot is too small or not finite."""
     if len(matrix) == 0:
         return np.zeros((0, 0))
@@ -308,19 +305,19 @@ def _cholesky(matrix: _Floats, smallest_pivot: float) -> _Floats | None:
     return np.asarray(lower, dtype=float)
 
 
-def _solved(lower: _Floats, right: _Floats, *, transposed: bool) -> _Floats:
+def _solved(lower: Floats, right: Floats, *, transposed: bool) -> Floats:
     """L^-1 right, or L'^-1 right."""
     if right.size == 0:
         return right
     return np.asarray(blas.dtrsm(1.0, lower, right, lower=1, trans_a=int(transposed)))
 
 
-def _inverse_square(lower: _Floats) -> _Floats:
+def _inverse_square(lower: Floats) -> Floats:
     """(L L')^-1, both triangles."""
     if len(lower) == 0:
         return np.zeros((0, 0))
     inverse, _ = lapack.dpotri(lower, lower=1)
-    triangle: _Floats = np.asarray(inverse, dtype=float)
+    triangle: Floats = np.asarray(inverse, dtype=float)
     triangle += np.tril(triangle, -1).T
     return triangle
 

@@ -12,34 +12,32 @@ which is right whatever W is, and (J'WJ / sigma^2 + P)^-1 if W is the inverse of
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lapack
 
+from posstats.arrays import Floats, Ints
 from posstats.errors import GeometryError
-
-_Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class NormalsFactor:
     """Cholesky factor of normal equations N = L L'; `lower` (u, u) in Fortran order."""
 
-    lower: _Floats
+    lower: Floats
 
-    def solve(self, right_side: _Floats) -> _Floats:
+    def solve(self, right_side: Floats) -> Floats:
         """N^-1 right_side, (u,) or (u, k)."""
         solution, _ = lapack.dpotrs(self.lower, right_side, lower=1)
         return np.asarray(solution, dtype=float)
 
 
-def mirrored(matrix: _Floats) -> _Floats:
+def mirrored(matrix: Floats) -> Floats:
     """The matrix (u, u) with its upper triangle copied onto the lower one, in place."""
     for row in range(len(matrix)):
         matrix[row + 1 :, row] = matrix[row, row + 1 :]
     return matrix
 
 
-def factorised(normals: _Floats) -> NormalsFactor:
+def factorised(normals: Floats) -> NormalsFactor:
     """Factorise normal equations (u, u), of which the upper triangle is read.
 
     The factor takes the place of the normal equations: they are large.
@@ -56,7 +54,7 @@ def factorised(normals: _Floats) -> NormalsFactor:
     return NormalsFactor(lower)
 
 
-def inverted(normals: _Floats) -> _Floats:
+def inverted(normals: Floats) -> Floats:
     """N^-1 (u, u), both triangles, in place of N; upper triangle read, errors of `factorised`."""
     inverse, _ = lapack.dpotri(factorised(normals).lower, lower=1, overwrite_c=1)
     return mirrored(np.asarray(inverse, dtype=float).T)
@@ -76,9 +74,9 @@ class Propagation:
         (u, u) N^-1 M: times N^-1 the covariance per unit of sigma^2 that the measurements cause.
     """
 
-    inverse: _Floats
-    prior_weights: _Floats
-    noise_gain: _Floats
+    inverse: Floats
+    prior_weights: Floats
+    noise_gain: Floats
 
     def variance_factor(self, weighted_square_sum: float, noise_trace: float) -> float:
         """sigma^2 from the residuals v, by the exact expectation of v'Wv.
@@ -102,15 +100,15 @@ class Propagation:
             return float("nan")
         return max(weighted_square_sum - prior_part, 0.0) / redundancy
 
-    def covariance(self, sigma2: float, unknowns: NDArray[np.intp]) -> _Floats:
+    def covariance(self, sigma2: float, unknowns: Ints) -> Floats:
         """Covariance (k, k) of some unknowns (indices, (k,)), the others marginal; symmetric."""
         rows = sigma2 * self.noise_gain[unknowns] + self.inverse[unknowns] * self.prior_weights
-        covariance: _Floats = rows @ self.inverse[:, unknowns]
+        covariance: Floats = rows @ self.inverse[:, unknowns]
         covariance += covariance.T.copy()
         return 0.5 * covariance
 
 
-def propagated(normals: _Floats, noise_normals: _Floats, prior_weights: _Floats) -> Propagation:
+def propagated(normals: Floats, noise_normals: Floats, prior_weights: Floats) -> Propagation:
     """Error propagation through a solution.
 
     Parameters

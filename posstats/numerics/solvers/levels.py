@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-_Ints = NDArray[np.intp]
+from posstats.arrays import Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,16 +23,16 @@ class Levels:
         (n,) level of every image, and its place there.
     """
 
-    image: _Ints
-    offsets: _Ints
-    level: _Ints
-    place: _Ints
+    image: Ints
+    offsets: Ints
+    level: Ints
+    place: Ints
 
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
 
-def breadth_first_levels(first: _Ints, second: _Ints, n_images: int) -> Levels:
+def breadth_first_levels(first: Ints, second: Ints, n_images: int) -> Levels:
     """Levels of the graph of pairs (P,), from a pseudo-peripheral image of every component."""
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(n_images, n_images)).tocsr()
     level = np.empty(n_images, dtype=np.intp)
@@ -51,7 +50,7 @@ def breadth_first_levels(first: _Ints, second: _Ints, n_images: int) -> Levels:
     return Levels(image, offsets, level, place)
 
 
-def _peripheral_depth(graph: csr_array, members: _Ints) -> _Ints:
+def _peripheral_depth(graph: csr_array, members: Ints) -> Ints:
     """Depth (k,) of the images of one component, from an image as far out as can be found."""
     depth = np.zeros(len(members), dtype=np.intp)
     while True:

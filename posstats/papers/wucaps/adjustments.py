@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
 from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.adjustment.significance import parameter_tests
+from posstats.arrays import Bools, Ints
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
@@ -24,8 +24,6 @@ from posstats.geometry.ground.check_points import (
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
-
-_Bools = NDArray[np.bool_]
 
 Control = Literal["none", "centre", "corners", "all"]
 Unknowns = Literal["none", "weighted", "free"]
@@ -63,7 +61,7 @@ class AdjustedBlock:
         return tuple(dict.fromkeys(test.name for test in tests if not test.determined))
 
 
-def control_points(block: Block, control: Control) -> _Bools:
+def control_points(block: Block, control: Control) -> Bools:
     """(g,) which ground points take part; check points never do."""
     surveyed = block.ground_points
     if surveyed is None:
@@ -75,7 +73,7 @@ def control_points(block: Block, control: Control) -> _Bools:
     return chosen
 
 
-def _some(points: GroundPoints, rows: NDArray[np.intp]) -> GroundPoints:
+def _some(points: GroundPoints, rows: Ints) -> GroundPoints:
     return GroundPoints(**{name: values[rows] for name, values in vars(points).items()})
 
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from posstats.arrays import Floats
 from posstats.block.image_pairs import StereoModels
 from posstats.block.model import Block, Orientations
 from posstats.errors import PosstatsError
@@ -15,8 +15,6 @@ from posstats.geometry.ground.check_points import (
 )
 from posstats.geometry.stereo.parallax import block_statistics, model_rms_px
 from posstats.numerics.kernels.rotation import wrapped
-
-_Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ def measured(
     )
 
 
-def _rms(values: _Floats) -> _Floats:
+def _rms(values: Floats) -> Floats:
     """(3,) root mean squares of the columns (n, 3)."""
-    rms: _Floats = np.sqrt(np.mean(values**2, axis=0))
+    rms: Floats = np.sqrt(np.mean(values**2, axis=0))
     return rms
