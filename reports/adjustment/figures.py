@@ -13,7 +13,7 @@ from ..block.view import Results, Row, rows, strips
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
-from ..figures.plan_view import Floats, PlanView, north_and_scale, polylines, view_of
+from ..figures.plan_view import PlanView, north_and_scale, polylines, view_of
 
 MAX_PLAN_IN = 3.4
 LEAST_RAYS = 5

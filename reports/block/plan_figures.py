@@ -18,7 +18,6 @@ from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import (
-    Floats,
     PlanView,
     arrow_scale,
     difference_arrows,
