@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
+from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
-from posstats.adjustment.control import ControlChoice, chosen_control
+from posstats.adjustment.control import chosen_control
 from posstats.adjustment.diagnosis import GROSS, likely_mistake
 from posstats.adjustment.observability import Undetermined, singular_message, undetermined
 from posstats.adjustment.priors import with_fitting_priors
@@ -26,7 +27,6 @@ from posstats.adjustment.screening import (
     without_rays,
 )
 from posstats.adjustment.selection import Dropped, select_parameters
-from posstats.adjustment.settings import AdjustmentSettings, additional_parameters
 from posstats.adjustment.significance import (
     Correlations,
     GlobalTest,
@@ -51,6 +51,7 @@ from posstats.geometry.ground.check_points import (
 )
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.settings import AdjustmentSettings, ControlChoice
 
 Progress = Callable[[str, float], object]
 

@@ -9,7 +9,6 @@ Errors live in the ground frame (omega, phi, kappa of the block's system) or in 
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
@@ -34,8 +33,7 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
-
-ErrorSource = Literal["coplanarity", "bundle", "adjusted"]
+from posstats.settings import AngleErrorSource, Frame
 
 _SHOWN = 10
 _SMALL_ANGLE_RAD = 1e-3
@@ -70,8 +68,8 @@ class AngleErrors:
         Sentences for the report.
     """
 
-    frame: Literal["ground", "camera"]
-    source: ErrorSource
+    frame: Frame
+    source: AngleErrorSource
     image: Ids
     strip: Ids
     time_s: Floats
@@ -217,7 +215,7 @@ class _Estimate:
     sigma_px: float
 
 
-def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> AngleErrors:
+def _errors(pos: Orientations, source: AngleErrorSource, estimate: _Estimate) -> AngleErrors:
     n = len(pos)
     tied = estimate.n_points > 0
     error = wrapped(pos.angles_rad - estimate.angles_rad)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 
@@ -14,12 +14,10 @@ from posstats.analysis.regression import (
     AngleRegression,
     ConstantFit,
     DriftFit,
-    FitKind,
 )
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.toml_section import nearest
-
-Form = Literal["none", "constant", "linear"]
+from posstats.settings import FitKind, Form, Scope
 
 
 class RuleFormatError(BlockFormatError):
@@ -126,7 +124,7 @@ def decide(
     regressions: Sequence[AngleRegression],
     rules: RuleSet,
     *,
-    scope: Literal["block", "strip"] = "block",
+    scope: Scope = "block",
     out_of_sample: OutOfSampleTest | None = None,
 ) -> tuple[Decision, ...]:
     """Decide for every angle of the block, or of every strip.

@@ -2,13 +2,14 @@
 
 import sys
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, get_args
 
 import click
 
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation, Language, TerrainKind
 
-from .command_line import FOLDER, clear_errors, default_out
+from .command_line import FOLDER, choice, clear_errors, default_out
 
 
 class _Length(click.ParamType[float]):
@@ -50,16 +51,16 @@ LENGTH = _Length()
 @click.option("--class-v", type=LENGTH, metavar="LENGTH", help="Vertical accuracy class.")
 @click.option("--gsd", type=LENGTH, metavar="LENGTH", help="Ground sampling distance.")
 @click.option("--scale", type=click.FloatRange(1), metavar="N", help="Map scale 1:N, such as 5000.")
-@click.option("--terrain", type=click.Choice(["flat", "mountain"]), help="Kind of terrain.")
+@click.option("--terrain", type=choice(TerrainKind), help="Kind of terrain.")
 @click.option(
     "--orientation",
-    type=click.Choice(["pos", "selected", "adjusted", "bundle"]),
-    help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
-    "results hold]",
+    type=choice(JudgedOrientation),
+    help=f"Orientation to judge.  [default: the first of {', '.join(get_args(JudgedOrientation))} "
+    "that the results hold]",
 )
 @click.option(
     "--language",
-    type=click.Choice(["en", "zh"]),
+    type=choice(Language),
     default="en",
     show_default=True,
     help="Of the document.",
@@ -84,9 +85,9 @@ def accept(
     class_v: float | None,
     gsd: float | None,
     scale: float | None,
-    terrain: Literal["flat", "mountain"] | None,
-    orientation: str | None,
-    language: str,
+    terrain: TerrainKind | None,
+    orientation: JudgedOrientation | None,
+    language: Language,
     templates: Path | None,
     out: Path | None,
     no_pdf: bool,

@@ -3,15 +3,16 @@
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
-from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
+from posstats.adjustment import adjust_block
 from posstats.adjustment.calibration import calibrated
-from posstats.adjustment.control import NAMED_CHOICES, read_ids
+from posstats.adjustment.control import read_ids
 from posstats.adjustment.results import adjustment_results, write_adjustment
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
+from posstats.settings import AdjustmentSettings, ControlChoice, NamedControl
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
@@ -32,8 +33,8 @@ def control_choice(text: str | None) -> ControlChoice:
     """
     if text is None:
         return "roles"
-    if text in NAMED_CHOICES:
-        return cast(ControlChoice, text)
+    if text in get_args(NamedControl):
+        return cast(NamedControl, text)
     path = Path(text)
     if not path.is_file():
         raise PosstatsError(

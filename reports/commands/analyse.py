@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from posstats.adjustment.calibration import calibrated
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.formats.block_folder import read_block
+from posstats.settings import Settings
 
 from ..block.folder import write_analysis
 from ..block.report import write_report

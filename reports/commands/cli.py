@@ -5,14 +5,24 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
-from typing import Literal
 
 import click
 
+from posstats.settings import (
+    AdjustmentSettings,
+    AngleErrorSource,
+    ControlSubset,
+    DriftScope,
+    FrameChoice,
+    RuleSetName,
+    Scope,
+    SelfCalibration,
+    Settings,
+)
 from posstats.version import __version__
 
 from . import acceptance_group as acceptance_cli
-from .command_line import FOLDER, clear_errors, default_out
+from .command_line import FOLDER, choice, clear_errors, default_out, named
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -33,36 +43,36 @@ def cli() -> None:
 @click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
 @click.option(
     "--rules",
-    default="paper",
+    default=Settings.rules,
     show_default=True,
-    metavar="paper|strict|FILE",
+    metavar=named(RuleSetName),
     help="Which angles to correct: the paper's rule, the strict rule, or a TOML file.",
 )
 @click.option(
     "--scope",
-    type=click.Choice(["block", "strip"]),
-    default="block",
+    type=choice(Scope),
+    default=Settings.scope,
     show_default=True,
     help="One regression line for the block, or one per strip.",
 )
 @click.option(
     "--errors",
-    type=click.Choice(["coplanarity", "bundle", "adjusted"]),
-    default="coplanarity",
+    type=choice(AngleErrorSource),
+    default=Settings.errors,
     show_default=True,
     help="Angle errors from the tie points, from a bundle adjustment with control points, or "
     "against adjusted.csv.",
 )
 @click.option(
     "--frame",
-    type=click.Choice(["ground", "camera", "auto"]),
-    default="ground",
+    type=choice(FrameChoice),
+    default=Settings.frame,
     show_default=True,
     help="Frame of the regression; auto takes the one that fits better out of sample.",
 )
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=Settings.robust,
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
@@ -73,9 +83,9 @@ def analyse(
     block: Path,
     out: Path | None,
     rules: str,
-    scope: Literal["block", "strip"],
-    errors: Literal["coplanarity", "bundle", "adjusted"],
-    frame: Literal["ground", "camera", "auto"],
+    scope: Scope,
+    errors: AngleErrorSource,
+    frame: FrameChoice,
     robust: bool,
     calibration: Path | None,
     no_pdf: bool,
@@ -89,8 +99,6 @@ def analyse(
     Example:
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
-    from posstats.analysis.steps import Settings
-
     from .analyse import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
@@ -104,21 +112,21 @@ def analyse(
 @click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points chosen among all ground points, or a file of ids, one on a line; the "
     "others are check points.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["none", "block", "strip"]),
-    default="block",
+    type=choice(DriftScope),
+    default=AdjustmentSettings.drift,
     show_default=True,
     help="Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or strips.",
 )
 @click.option(
     "--self-calibration",
-    type=click.Choice(["none", "bauer", "brown"]),
-    default="none",
+    type=choice(SelfCalibration),
+    default=AdjustmentSettings.self_calibration,
     show_default=True,
     help="Image deformation.",
 )
@@ -135,7 +143,7 @@ def analyse(
 @click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=AdjustmentSettings.robust,
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
@@ -145,8 +153,8 @@ def adjust(
     block: Path,
     out: Path | None,
     control: str | None,
-    drift: Literal["none", "block", "strip"],
-    self_calibration: Literal["none", "bauer", "brown"],
+    drift: DriftScope,
+    self_calibration: SelfCalibration,
     camera: bool,
     lever_arm: bool,
     estimate_weights: bool,
@@ -165,8 +173,6 @@ def adjust(
     Example:
       posstats adjust flight7 --control corners --drift strip --out flight7/adjusted
     """
-    from posstats.adjustment import AdjustmentSettings
-
     from .adjust import adjust_folder, control_choice
 
     settings = AdjustmentSettings(
@@ -189,12 +195,12 @@ def adjust(
 @click.option("--out", type=FOLDER, required=True, metavar="FILE", help="TOML file to write.")
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points, as of adjust.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["block", "strip"]),
+    type=choice(Scope),
     default="strip",
     show_default=True,
     help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
@@ -205,7 +211,7 @@ def calibrate(
     block: Path,
     out: Path,
     control: str | None,
-    drift: Literal["block", "strip"],
+    drift: Scope,
     lever_arm: bool,
 ) -> None:
     """Estimate the boresight of the POS from the calibration flight BLOCK.
@@ -218,8 +224,6 @@ def calibrate(
       posstats calibrate field --out boresight.toml
       posstats analyse flight7 --calibration boresight.toml
     """
-    from posstats.adjustment import AdjustmentSettings
-
     from .adjust import control_choice
     from .calibrate import calibrate_folder
 

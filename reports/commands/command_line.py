@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 
@@ -20,6 +20,16 @@ class _Folder(click.Path):
 
 
 FOLDER = _Folder(path_type=Path)
+
+
+def choice(literal: Any) -> click.Choice[str]:
+    """The choices of a Literal type of `posstats.settings`."""
+    return click.Choice(get_args(literal))
+
+
+def named(literal: Any) -> str:
+    """How help names what is one of a Literal type's values, or a file."""
+    return "|".join((*get_args(literal), "FILE"))
 
 
 def clear_errors(command: Callable[..., None]) -> Callable[..., None]:

@@ -22,7 +22,7 @@ from helpers import ROOT
 from small_scenario import small_block
 
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
@@ -32,6 +32,7 @@ from posstats.reports.commands.cli import cli
 from posstats.reports.verification import words
 from posstats.reports.verification.recomputation import recompute
 from posstats.reports.verification.values import TOLERANCE
+from posstats.settings import Settings
 
 COMMAND = Path(sys.executable).with_name("posstats")
 

@@ -11,12 +11,13 @@ from small_blocks import Layout, observed_block, true_block
 from strip_scene import block, scene
 
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.contract.files import as_values
 from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
+from posstats.settings import Settings
 
 DOCS = ROOT / "docs"
 

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, replace
 
-from posstats.analysis.steps import Analysis, Progress, Settings, analyse
+from posstats.analysis.steps import Analysis, Progress, analyse
 from posstats.block.image_pairs import StereoModels
 from posstats.block.model import Block, Orientations
 from posstats.geometry.stereo.parallax import block_statistics, model_rms_px
+from posstats.settings import Settings
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 
 AREAS = (1, 2, 3)
