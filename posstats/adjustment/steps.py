@@ -29,11 +29,9 @@ from posstats.adjustment.screening import (
 from posstats.adjustment.selection import Dropped, select_parameters
 from posstats.adjustment.significance import (
     Correlations,
-    GlobalTest,
     LocalTest,
     ParameterTest,
     correlations,
-    global_test,
     local_tests,
     parameter_tests,
     scale,
@@ -52,6 +50,7 @@ from posstats.geometry.ground.check_points import (
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.settings import AdjustmentSettings, ControlChoice
+from posstats.statistics.global_test import GlobalTest, global_test
 
 Progress = Callable[[str, float], object]
 
@@ -131,7 +130,7 @@ class Adjustment:
         if surveyed is None:
             return None
         used = {self.block.tie_points.point_id[k] for k in self.problem.control.point}
-        return _some(surveyed, np.array([point in used for point in surveyed.point], dtype=bool))
+        return surveyed.subset(np.array([point in used for point in surveyed.point], dtype=bool))
 
 
 def adjust_block(
@@ -216,16 +215,6 @@ def _takes_part(block: Block) -> Bools:
     return ~block.check_points[block.tie_points.point]
 
 
-def _some(surveyed: GroundPoints, keep: Bools) -> GroundPoints:
-    return GroundPoints(
-        surveyed.point[keep],
-        surveyed.position_m[keep],
-        surveyed.is_check[keep],
-        surveyed.sigma_xy_m[keep],
-        surveyed.sigma_z_m[keep],
-    )
-
-
 def _of_wrong_axes(stated: BundleProblem) -> Bools:
     """(m,) rays of images with wrong axes, with which nothing converges; snooping names these."""
     wrong: Bools = np.isin(stated.image, images_with_wrong_axes(stated))
@@ -293,7 +282,7 @@ def _result(
         rejected=rejected,
         problem=problem,
         adjusted=adjusted,
-        overall=global_test(adjusted),
+        overall=global_test(adjusted.square_sum, adjusted.dof),
         parameters=tests,
         common_correlations=_correlations(adjusted),
         single=local_tests(problem, adjusted),

@@ -28,18 +28,20 @@ from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
 from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated
+from posstats.statistics.robust import (
+    SMALLEST_SCALE,
+    huber_weights,
+    kept_weights,
+    median_scale,
+)
 
 MAX_IMAGES = 1500  # some five dense matrices of (6 n)^2 numbers at once: 3.2 GB
 MAX_ITERATIONS = 60
-_HUBER = 1.345
-_REJECTION = 3.5
-_NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
 _LARGEST_STEP_RAD = 0.2
 _Phase = Literal["reweight", "plain", "fixed"]
 _NEXT: dict[_Phase, _Phase] = {"reweight": "plain", "plain": "fixed", "fixed": "fixed"}
 # A phase has settled when the mean square step, in standard errors, falls below:
 _SETTLED: dict[_Phase, float] = {"reweight": 0.1, "plain": 1e-2, "fixed": 1e-9}
-_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,13 +163,13 @@ class _Weighting:
         if self.phase == "fixed":
             return self
         standardised = np.abs(observed.q) / np.sqrt(observed.variance)
-        spread = max(_NORMAL_MAD * float(np.median(standardised)), smallest_px)
-        weight = np.ones_like(standardised)
+        spread = median_scale(standardised, smallest_px)
         if self.phase == "reweight":
-            weight = np.minimum(1.0, _HUBER * spread / np.maximum(standardised, smallest_px))
+            weight = huber_weights(standardised, spread)
             return replace(self, robust_weight=weight, scale_px=spread)
+        weight = np.ones_like(standardised)
         if self.robust:
-            weight = (standardised <= _REJECTION * spread).astype(float)
+            weight = kept_weights(standardised, spread)
         scale = float(np.sqrt(np.average(standardised**2, weights=weight)))
         return replace(self, robust_weight=weight, scale_px=max(scale, smallest_px))
 
@@ -226,7 +228,7 @@ def _equations(
 ) -> tuple[_Weighting, _Normals]:
     """Weights and normal equations at a state; the derivatives, by far larger, end here."""
     observed = _linearised(pairs, priors, frames, state)
-    weighting = state.weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
+    weighting = state.weighting.updated(observed, SMALLEST_SCALE * priors.image_px)
     return weighting, _normal_equations(pairs, observed, weighting, with_noise=with_noise)
 
 

@@ -14,8 +14,8 @@ from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
 from posstats.adjustment.significance import parameter_tests
-from posstats.arrays import Bools, Ints
-from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.arrays import Bools
+from posstats.block.model import Block, Orientations
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     differences,
@@ -67,14 +67,10 @@ def control_points(block: Block, control: ControlSubset) -> Bools:
     if surveyed is None:
         return np.empty(0, dtype=bool)
     candidates = np.flatnonzero(~surveyed.is_check)
-    without_checks = replace(block, ground_points=_some(surveyed, candidates))
+    without_checks = replace(block, ground_points=surveyed.subset(candidates))
     chosen = np.zeros(len(surveyed), dtype=bool)
     chosen[candidates] = chosen_control(without_checks, control)
     return chosen
-
-
-def _some(points: GroundPoints, rows: Ints) -> GroundPoints:
-    return GroundPoints(**{name: values[rows] for name, values in vars(points).items()})
 
 
 def adjusted_block(block: Block, control: ControlSubset, unknowns: Unknowns) -> AdjustedBlock:
