@@ -23,7 +23,7 @@ from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
-from posstats.geometry.coplanarity.adjustment import Priors, adjust
+from posstats.geometry.coplanarity.adjustment import Priors, adjust_coplanarity
 from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.numerics.kernels.rotation import (
     rotation_derivatives,
@@ -164,7 +164,7 @@ def coplanarity_errors(
         system=pos.system,
         image_px=block.accuracy.image_px,
     )
-    adjusted = adjust(pairs, priors, robust=robust, progress=progress)
+    adjusted = adjust_coplanarity(pairs, priors, robust=robust, progress=progress)
     estimate = _Estimate(
         adjusted.angles_rad,
         adjusted.covariance_rad2,

@@ -27,7 +27,7 @@ from posstats.geometry.coplanarity.normals import (
 from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
-from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated
+from posstats.numerics.solvers.dense import Propagation, mirrored, normals_factor, propagated
 from posstats.statistics.robust import (
     SMALLEST_SCALE,
     huber_weights,
@@ -80,7 +80,7 @@ class Priors:
 
 
 @dataclass(frozen=True, eq=False)
-class AdjustedBlock:
+class CoplanarityAdjustment:
     """Result of the adjustment of n images.
 
     Attributes
@@ -105,13 +105,13 @@ class AdjustedBlock:
     n_iterations: int
 
 
-def adjust(
+def adjust_coplanarity(
     pairs: PointPairs,
     priors: Priors,
     *,
     robust: bool = True,
     progress: Callable[[int, int], object] | None = None,
-) -> AdjustedBlock:
+) -> CoplanarityAdjustment:
     """Adjust the block: Gauss-Newton from the priors.
 
     The robust solution reweights after Huber until it settles, then takes out pairs beyond
@@ -301,7 +301,7 @@ def _parts(pairs: PointPairs) -> list[slice]:
 
 def _step(normals: Floats, right_side: Floats) -> tuple[Floats, float]:
     """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
-    step = factorised(normals).solve(right_side)
+    step = normals_factor(normals).solve(right_side)
     decrement = float(step @ right_side) / step.size
     largest = float(np.abs(step.reshape(-1, 6)[:, :3]).max())
     return step * min(1.0, _LARGEST_STEP_RAD / max(largest, 1e-300)), decrement
@@ -309,13 +309,13 @@ def _step(normals: Floats, right_side: Floats) -> tuple[Floats, float]:
 
 def _result(
     pairs: PointPairs, priors: Priors, frames: Floats, state: _State, count: int
-) -> AdjustedBlock:
+) -> CoplanarityAdjustment:
     propagation, sigma2 = _propagated(pairs, priors, frames, state)
     n = len(priors.angles_rad)
     angles = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()
     believed = priors.image_px**2 if np.isnan(sigma2) else sigma2
     estimate = state.unknowns.reshape(n, 6)
-    return AdjustedBlock(
+    return CoplanarityAdjustment(
         angles_rad=estimate[:, :3],
         position_m=estimate[:, 3:],
         covariance_rad2=propagation.covariance(believed, angles).reshape(n, 3, n, 3),
