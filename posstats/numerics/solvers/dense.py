@@ -55,7 +55,7 @@ def normals_factor(normals: Floats) -> NormalsFactor:
 
 
 def inverted(normals: Floats) -> Floats:
-    """N^-1 (u, u), both triangles, in place of N; upper triangle read, errors of `normals_factor`."""
+    """N^-1 (u, u), both triangles, in place of N; of N the upper, as in `normals_factor`."""
     inverse, _ = lapack.dpotri(normals_factor(normals).lower, lower=1, overwrite_c=1)
     return mirrored(np.asarray(inverse, dtype=float).T)
 
