@@ -32,6 +32,9 @@ JudgedOrientation = Literal["bundle", "adjusted", "selected", "pos"]
 Language = Literal["en", "zh"]
 """Of documents."""
 
+PAPER_SEED = 1
+"""Of the simulations that repeat a paper's experiment."""
+
 
 @dataclass(frozen=True)
 class Settings:

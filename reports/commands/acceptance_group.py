@@ -9,7 +9,7 @@ import click
 from posstats.errors import PosstatsError
 from posstats.settings import JudgedOrientation, Language, TerrainKind
 
-from .command_line import FOLDER, choice, clear_errors, default_out
+from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
 
 
 class _Length(click.ParamType[float]):
@@ -71,8 +71,8 @@ LENGTH = _Length()
     metavar="DIR",
     help="Folder with a logo, a letterhead or other templates of yours.",
 )
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
-@click.option("--no-pdf", is_flag=True, help="Write the document as HTML only.")
+@out_option
+@no_pdf_option("document")
 @click.pass_context
 @clear_errors
 def accept(

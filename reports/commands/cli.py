@@ -22,7 +22,18 @@ from posstats.settings import (
 from posstats.version import __version__
 
 from . import acceptance_group as acceptance_cli
-from .command_line import FOLDER, choice, clear_errors, default_out, named
+from .command_line import (
+    FOLDER,
+    block_argument,
+    calibration_option,
+    choice,
+    clear_errors,
+    default_out,
+    named,
+    no_pdf_option,
+    out_option,
+    seed_option,
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -39,8 +50,8 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--rules",
     default=Settings.rules,
@@ -76,8 +87,8 @@ def cli() -> None:
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@calibration_option
+@no_pdf_option("report")
 @clear_errors
 def analyse(
     block: Path,
@@ -108,8 +119,8 @@ def analyse(
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--control",
     metavar=named(ControlSubset),
@@ -140,14 +151,14 @@ def analyse(
 @click.option(
     "--drop-insignificant", is_flag=True, help="Drop free parameters that are not significant."
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
+@calibration_option
 @click.option(
     "--robust/--no-robust",
     default=AdjustmentSettings.robust,
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@no_pdf_option("report")
 @clear_errors
 def adjust(
     block: Path,
@@ -191,7 +202,7 @@ def adjust(
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @click.option("--out", type=FOLDER, required=True, metavar="FILE", help="TOML file to write.")
 @click.option(
     "--control",
@@ -234,10 +245,8 @@ def calibrate(
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
@@ -258,10 +267,8 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the second source paper: POS errors removed in the bundle adjustment.
@@ -317,7 +324,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @clear_errors
 def check(block: Path) -> None:
     """Validate the block folder BLOCK and print a summary.

@@ -20,8 +20,8 @@ from posstats.papers.wucaps.adjustments import (
     pos_parameters,
 )
 from posstats.papers.wucaps.measures import Measures, measured
-from posstats.papers.wucaps.situations import DEFAULT_SEED, Flights, Situation, simulated
-from posstats.settings import ControlSubset, Settings
+from posstats.papers.wucaps.situations import Flights, Situation, simulated
+from posstats.settings import PAPER_SEED, ControlSubset, Settings
 
 Method = Literal[
     "pos",
@@ -116,7 +116,7 @@ class SituationRun:
 
 def run_situation(
     situation: Situation,
-    seed: int = DEFAULT_SEED,
+    seed: int = PAPER_SEED,
     *,
     progress: Callable[[float], object] | None = None,
 ) -> SituationRun:
