@@ -5,7 +5,6 @@ Oracle: the wrong values put in on purpose.
 
 import os
 import re
-import time
 
 import pytest
 from profile_texts import OWN, findings_of, write
@@ -137,9 +136,7 @@ R = "[[requirement]]\nid = 'a'\n"
     ids=lambda value: value[:40] if value.startswith("c.toml") else "",
 )
 def test_a_wrong_value_is_one_finding(tmp_path, text, expected):
-    start = time.perf_counter()
     (finding,) = findings_of(write(tmp_path, c=text))
-    assert time.perf_counter() - start < 5.0
     assert expected in finding
     assert len(finding) < 700
 
