@@ -9,6 +9,7 @@ import click
 from posstats.errors import PosstatsError
 from posstats.settings import JudgedOrientation, Language, TerrainKind
 
+from ..output import timestamp
 from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
 
 
@@ -174,7 +175,7 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     """
     from .sign import sign_file
 
-    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
+    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock()):
         click.echo(line)
 
 
@@ -206,7 +207,7 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
     from ..verification.questions import holds
     from .verify import verify_file
 
-    answers = verify_file(file, inputs, trust, templates)
+    answers = verify_file(file, inputs, trust, templates, now=timestamp.clock())
     for each in answers:
         click.echo(each.line)
     if not holds(answers):
