@@ -47,6 +47,10 @@ coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth (many mi
 seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
 	$(BIN)/python benchmarks/paper_seeds.py
 
+.PHONY: docs
+docs: $(READY)  ## Make the tables of keys in docs/ anew from the contract
+	$(BIN)/python docs/keys.py
+
 .PHONY: clean
 clean:  ## Remove the environment and all output
 	rm -rf $(VENV) out build dist *.egg-info

@@ -128,6 +128,13 @@ def analyse(
     ------
     PosstatsError
         If there is no stereo model, the rules cannot be read, or the adjustment fails.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> analysis = posstats.analyse(posstats.read_block("block"))
+    >>> [(each.angle, each.form) for each in analysis.chosen.decisions]
+    [('omega', 'linear'), ('phi', 'none'), ('kappa', 'none')]
     """
     settings = settings or Settings()
     report = progress or _no_progress

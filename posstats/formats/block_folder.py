@@ -49,6 +49,13 @@ def read_block(path: str | PathLike[str]) -> Block:
     BlockFormatError
         With a finding for everything that is wrong: file, line, column, what was found and what
         was expected.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> block = posstats.read_block("block")
+    >>> len(block.orientations), block.orientations.strips
+    (32, ('1', '2', '3', '4'))
     """
     folder = Path(path)
     if not folder.is_dir():

@@ -141,6 +141,16 @@ def orient(
     ------
     GeometryError
         For an unknown method.
+
+    Examples
+    --------
+    What relative orientation leaves of the parallax of a block with 0.2 px of image noise:
+
+    >>> import posstats
+    >>> models = posstats.stereo_models(posstats.read_block("block"))
+    >>> left = posstats.orient(models, "independent")
+    >>> print(f"{left.y_parallax_rms_px.mean():.2f} px")
+    0.27 px
     """
     if method not in get_args(Method):
         raise GeometryError(
