@@ -15,7 +15,6 @@ from posstats.contract.files import as_values
 from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
-from posstats.settings import Settings
 
 DOCS = ROOT / "docs"
 KEYS = runpy.run_path(str(DOCS / "keys.py"))
