@@ -27,6 +27,15 @@ _EXPECTED: Mapping[object, str] = {
 }
 
 
+Number = Annotated[
+    float, msgspec.Meta(ge=-1e9, le=1e9, description="a finite number of at most 1e+09 in size")
+]
+Positive = Annotated[
+    float, msgspec.Meta(ge=1e-9, le=1e9, description="a positive number from 1e-09 to 1e+09")
+]
+"""Sizes beyond these (m, px, degrees) are slips of the pen, and would overflow as weights."""
+
+
 @dataclass(frozen=True)
 class Before:
     """Annotation: `change` is applied to the value of the file before its type is checked."""
@@ -120,10 +129,9 @@ class Shape:
         return _EXPECTED.get(self.plain, "a table of keys and values")
 
 
-@cache
 def shapes(kind: type) -> Mapping[str, Shape]:
     """The fields of a dataclass, by name."""
-    return {name: _shape(hint) for name, hint in get_type_hints(kind, include_extras=True).items()}
+    return _shapes(kind)
 
 
 def required(kind: type) -> list[str]:
@@ -138,6 +146,11 @@ def required(kind: type) -> list[str]:
 def made(kind: type[T], values: Mapping[str, Any]) -> T | None:
     """The dataclass of the values that are right; None if one without a default is not."""
     return kind(**values) if set(required(kind)) <= set(values) else None
+
+
+@cache
+def _shapes(kind: type) -> Mapping[str, Shape]:
+    return {name: _shape(hint) for name, hint in get_type_hints(kind, include_extras=True).items()}
 
 
 def _shape(hint: Any) -> Shape:
