@@ -13,7 +13,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 from posstats.errors import BlockFormatError
 from posstats.formats.hints import nearest, shortened, shown
 from posstats.formats.toml_lines import Place, line_of, lines_of, value_at
-from posstats.formats.toml_types import Shape, made, required, shapes
+from posstats.formats.toml_types import Shape, made, needed, shapes
 
 T = TypeVar("T")
 Conflict = tuple[Place, str]
@@ -77,6 +77,14 @@ class TomlDocument:
         table = value_at(place, self.values)
         return tuple(table) if isinstance(table, Mapping) else ()
 
+    def said(self, table: object, place: Place = ()) -> dict[str, Any]:
+        """The values of a table that was read at a place, of the keys that are given and right."""
+        return {
+            key: getattr(table, key)
+            for key in self.given(place)
+            if hasattr(table, key) and self.is_right((*place, key))
+        }
+
     @cached_property
     def _lines(self) -> dict[Place, int]:
         return lines_of(self.text, self.values)
@@ -106,7 +114,7 @@ class TomlDocument:
         for key in values:
             if key not in known:
                 self.refuse((*place, key), f"found an unknown key{nearest(str(key), known)}")
-        for key in required(kind):
+        for key in needed(kind):
             if key not in values:
                 self.refuse((*place, key), f"found nothing, expected {known[key].expected()}")
 

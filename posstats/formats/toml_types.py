@@ -36,6 +36,11 @@ Positive = Annotated[
 """Sizes beyond these (m, px, degrees) are slips of the pen, and would overflow as weights."""
 
 
+Count = Annotated[
+    int, msgspec.Meta(ge=1, le=1_000_000_000, description="a whole number from 1 to 1000000000")
+]
+
+
 @dataclass(frozen=True)
 class Before:
     """Annotation: `change` is applied to the value of the file before its type is checked."""
@@ -50,6 +55,11 @@ class Check:
     faults: Callable[[Any], Iterable[str]]
 
 
+class Needed:
+    """Annotation: the key must be there, although the field has a default."""
+
+
+NEEDED = Needed()
 ONE_OR_MORE = Before(lambda value: value if isinstance(value, list | tuple) else [value])
 """One value stands for a list of one."""
 
@@ -110,7 +120,7 @@ class Shape:
         ValueError
             If it is of another type, or beyond its limits.
         """
-        return msgspec.convert(_finite(value), self.hint)
+        return value if self.plain is object else msgspec.convert(_finite(value), self.hint)
 
     def faults(self, value: Any) -> list[str]:
         """What is wrong with a value of the right type."""
@@ -134,8 +144,17 @@ def shapes(kind: type) -> Mapping[str, Shape]:
     return _shapes(kind)
 
 
-def required(kind: type) -> list[str]:
-    """Names of the fields that have no default."""
+def needed(kind: type) -> list[str]:
+    """Names of the keys that must be there."""
+    without_default = _without_default(kind)
+    return [
+        name
+        for name, shape in shapes(kind).items()
+        if name in without_default or NEEDED in shape.marks
+    ]
+
+
+def _without_default(kind: type) -> list[str]:
     return [
         each.name
         for each in fields(kind)
@@ -145,7 +164,7 @@ def required(kind: type) -> list[str]:
 
 def made(kind: type[T], values: Mapping[str, Any]) -> T | None:
     """The dataclass of the values that are right; None if one without a default is not."""
-    return kind(**values) if set(required(kind)) <= set(values) else None
+    return kind(**values) if set(_without_default(kind)) <= set(values) else None
 
 
 @cache
