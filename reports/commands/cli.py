@@ -139,6 +139,13 @@ def analyse(
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
+@click.option(
+    "--language",
+    type=click.Choice(["en", "zh"]),
+    default="en",
+    show_default=True,
+    help="Of the report; adjustment.json stays English.",
+)
 @click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
 @clear_errors
 def adjust(
@@ -153,6 +160,7 @@ def adjust(
     drop_insignificant: bool,
     calibration: Path | None,
     robust: bool,
+    language: Literal["en", "zh"],
     no_pdf: bool,
 ) -> None:
     """Adjust the block folder BLOCK as a bundle with its POS, and write a report.
@@ -180,7 +188,9 @@ def adjust(
         robust=robust,
     )
     target = out or default_out(block)
-    for line in adjust_folder(block, target, settings, calibration, pdf=not no_pdf):
+    for line in adjust_folder(
+        block, target, settings, calibration, language=language, pdf=not no_pdf
+    ):
         click.echo(line)
 
 
