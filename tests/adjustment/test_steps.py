@@ -16,12 +16,16 @@ from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
-from posstats.contract.files import to_json
+from posstats.adjustment.undetermined import UndeterminedBlockError
+from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.files import from_json, to_json
+from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
 from posstats.geometry.ground.intersection import intersect
 from posstats.numerics.kernels.rotation import wrapped
 from posstats.reports.adjustment.verdict import paragraph
+from posstats.reports.adjustment.words import words_in
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
 GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
@@ -172,12 +176,12 @@ def test_a_block_without_additional_parameters_is_adjusted(block):
     )
     plain = adjust_block(right, AdjustmentSettings(control="all", drift="none"))
     assert plain.parameters == ()
-    assert adjustment_results(plain)["correlations"] == []
+    assert adjustment_results(plain).correlations == ()
 
 
 def test_a_systematic_error_without_parameters_is_called_by_its_name(tiny):
-    values = adjustment_results(adjust_block(tiny, AdjustmentSettings("all", drift="none")))
-    assert any("IMU angles of 15 of 15 images contradict" in each for each in values["warnings"])
+    results = adjustment_results(adjust_block(tiny, AdjustmentSettings("all", drift="none")))
+    assert Notice(code="systematic_imu", values={"n": 15, "n_images": 15}) in results.notices
 
 
 def test_insignificant_parameters_are_dropped_on_request(block):
@@ -212,8 +216,9 @@ def test_no_control_and_no_pos_weights_is_a_datum_defect(block):
             block.orientations, sigma_position_m=nothing, sigma_angles_rad=nothing
         ),
     )
-    with pytest.raises(PosstatsError, match="datum"):
+    with pytest.raises(UndeterminedBlockError, match="open_datum") as caught:
         adjust_block(loose, AdjustmentSettings(control="none", drift="none"))
+    assert [each.reason.code for each in caught.value.defects] == ["open_datum"]
 
 
 def test_points_on_a_line_leave_angles_to_the_imu(block):
@@ -240,9 +245,9 @@ def test_a_control_point_off_by_100_m_is_named(block):
     position[list(surveyed.point).index("C3"), 0] += 100.0
     off = replace(block, ground_points=replace(surveyed, position_m=position))
     found = adjust_block(off, AdjustmentSettings(control="all"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "control"]
-    assert [row["point"] for row in named] == ["C3"]
-    assert named[0]["size"][0] == pytest.approx(100.0, abs=2.0)
+    named = [row for row in adjustment_results(found).blunders if row.kind == "control"]
+    assert [row.point for row in named] == ["C3"]
+    assert named[0].size[0] == pytest.approx(100.0, abs=2.0)
     assert found.overall.p > 1e-4
 
 
@@ -253,8 +258,8 @@ def test_a_wrong_control_point_is_no_witness_against_priors(block, control, axis
     position[list(surveyed.point).index("C3"), axis] += 100.0
     off = replace(block, ground_points=replace(surveyed, position_m=position))
     found = adjust_block(off, AdjustmentSettings(control=control, drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "control"]
-    assert [row["point"] for row in named] == ["C3"]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "control"]
+    assert [row.point for row in named] == ["C3"]
     for each in found.parameters:
         if each.name.startswith("gnss") and each.name.endswith("shift"):
             assert abs(each.value) < 1.0
@@ -268,9 +273,9 @@ def test_a_single_control_point_against_the_priors_is_warned_of(block):
 
     def warned(block):
         found = adjust_block(block, AdjustmentSettings(control=("C3",)))
-        return [w for w in adjustment_results(found)["warnings"] if "control point C3" in w]
+        return [n.values for n in adjustment_results(found).notices if n.code == "lone_control"]
 
-    assert "gnss_x_shift" in "".join(warned(off))
+    assert warned(off) == [{"point": "C3", "parameters": ("gnss_x_shift",)}]
     assert warned(block) == []
 
 
@@ -282,8 +287,8 @@ def test_an_image_with_swapped_axes_is_named_and_spoils_no_check_point(block):
     xy[rays] = xy[rays][:, ::-1]
     swapped = replace(block, tie_points=replace(ties, xy_px=xy))
     found = adjust_block(swapped, AdjustmentSettings(control="corners", drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
-    assert [row["image"] for row in named] == [block.orientations.image[image]]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "axes"]
+    assert [row.image for row in named] == [block.orientations.image[image]]
     assert np.nanmax(np.abs(found.check_points.difference_m)) < 5.0
 
 
@@ -296,8 +301,8 @@ def test_an_image_mirrored_along_the_flight_shows_against_the_next_strip(block):
     xy[rays, along] *= -1.0
     reversed_ = replace(block, tie_points=replace(ties, xy_px=xy))
     found = adjust_block(reversed_, AdjustmentSettings(control="corners", drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
-    assert [row["image"] for row in named] == [block.orientations.image[image]]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "axes"]
+    assert [row.image for row in named] == [block.orientations.image[image]]
 
 
 @pytest.mark.parametrize("signs", [(-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
@@ -401,10 +406,13 @@ def test_an_observation_that_the_block_needs_is_said_to_be_doubtful(tiny):
     found = adjust_block(tiny, AdjustmentSettings("all"))
     ray = Blunder("image", 0, 9.0, np.array([1.0, 0.0]), "px")
     snooping = replace(found.snooping, held=ray, complete=False)
-    values = adjustment_results(replace(found, snooping=snooping))
-    assert any("is not determined: it, or one" in each for each in values["warnings"])
-    assert not any("largest number" in each for each in values["warnings"])
-    assert "kept as the block needs it: image ray of point" in paragraph(values)
+    results = adjustment_results(replace(found, snooping=snooping))
+    codes = [each.code for each in results.notices]
+    assert "snooping_held" in codes
+    assert "snooping_stopped" not in codes
+    words, (held,) = words_in("en"), [row for row in results.blunders if not row.taken_out]
+    named = words.of("named", "image", image=held.image, point=held.point)
+    assert words.text("blunders.held", what=named) in paragraph(words, results)
 
 
 @pytest.mark.parametrize(
@@ -431,7 +439,9 @@ def test_a_wrong_convention_is_named(tiny, spoil, words):
 
 
 def test_results_are_the_schema_in_plain_values(corners):
-    values = json.loads(to_json(adjustment_results(corners, created="2020-01-01")))
+    text = to_json(adjustment_results(corners, created="2020-01-01"))
+    assert to_json(from_json(text, AdjustmentResults, "adjustment.json")) == text
+    values = json.loads(text)
     assert values["schema"] == "posstats-adjustment/1"
     assert values["converged"] is True
     assert {row["group"] for row in values["groups"]} >= {"image", "gnss", "imu", "control"}
@@ -488,14 +498,14 @@ def test_an_unknown_camera_is_found_and_told_in_the_terms_of_the_block(block):
         block, cameras=(stated,), tie_points=replace(ties, xy_px=ties.xy_px - [6.0, 4.0])
     )
     adjustment = adjust_block(wrong, AdjustmentSettings(control="all", camera=True))
-    values = adjustment_results(adjustment)
-    (camera,) = values["cameras"]
+    results = adjustment_results(adjustment)
+    (camera,) = results.cameras
     sigma = {name: parameter(adjustment, name).sigma for name in ("camera_c", "camera_x0")}
     assert sigma["camera_c"] < 3.0
     assert sigma["camera_x0"] < 1.0
-    assert abs(camera["principal_distance_px"] - true.principal_distance_px) < (
+    assert abs(camera.principal_distance_px - true.principal_distance_px) < (
         4.0 * sigma["camera_c"]
     )
-    found = np.array(camera["principal_point_px"]) - true.principal_point_px
+    found = np.array(camera.principal_point_px) - true.principal_point_px
     assert (np.abs(found) < 4.0 * sigma["camera_x0"]).all()
-    assert values["settings"]["camera"]
+    assert results.settings.camera
