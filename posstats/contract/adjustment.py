@@ -12,6 +12,7 @@ from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
 from posstats.contract.notice import Notice
 from posstats.contract.survey import BlockSummary, ImagePlace
+from posstats.settings import ControlChoice, DriftScope, SelfCalibration
 
 SCHEMA = "posstats-adjustment/1"
 
@@ -47,13 +48,10 @@ class AdjustmentRequest:
     """What was asked for, and the stated accuracies."""
 
     control: Annotated[
-        Literal["roles", "none", "centre", "corners", "all"] | tuple[str, ...],
-        about("`roles`, `none`, `centre`, `corners`, `all`, or a list of ids"),
+        ControlChoice, about("`roles`, `none`, `centre`, `corners`, `all`, or a list of ids")
     ]
-    drift: Annotated[Literal["none", "block", "strip"], about("scope of the POS parameters")]
-    self_calibration: Annotated[
-        Literal["none", "bauer", "brown"], about("parameters of image deformation")
-    ]
+    drift: Annotated[DriftScope, about("scope of the POS parameters")]
+    self_calibration: Annotated[SelfCalibration, about("parameters of image deformation")]
     camera: Annotated[bool, about("whether principal distance and point were unknown")]
     lever_arm: Annotated[bool, about("whether the lever arm was unknown")]
     estimate_weights: Annotated[bool, about("whether the variances of the groups were estimated")]
