@@ -33,7 +33,7 @@ class AdjustedBlock(BlockSummary):
 
 @dataclass(frozen=True, kw_only=True)
 class Priors:
-    """Standard deviations of POS parameters as observations of the value 0; None: free."""
+    """Standard deviations of POS parameters as observations of the value 0."""
 
     shift_m: Annotated[float | None, about("of a GNSS shift; `null`: free, as below")]
     drift_m_per_s: Annotated[float | None, about("of a GNSS drift")]
@@ -47,9 +47,7 @@ class Priors:
 class AdjustmentRequest:
     """What was asked for, and the stated accuracies."""
 
-    control: Annotated[
-        ControlChoice, about("`roles`, `none`, `centre`, `corners`, `all`, or a list of ids")
-    ]
+    control: Annotated[ControlChoice, about("a choice of control points, or their ids")]
     drift: Annotated[DriftScope, about("scope of the POS parameters")]
     self_calibration: Annotated[SelfCalibration, about("parameters of image deformation")]
     camera: Annotated[bool, about("whether principal distance and point were unknown")]
@@ -71,7 +69,7 @@ class GroupSummary:
 
     group: Annotated[
         Group,
-        about("`image`, `gnss`, `imu`, `control`, or `parameters` (priors of the parameters)"),
+        about("`parameters`: the prior values of additional parameters"),
     ]
     n: Annotated[int, about("observations")]
     rms: Annotated[
@@ -129,7 +127,7 @@ class DroppedParameter:
     scope: Annotated[str, about("of the parameter")]
     reason: Annotated[
         Literal["singular", "not determined", "not significant"],
-        about('`"singular"`, `"not determined"`, `"not significant"`'),
+        about("`singular`: without it the normal equations may be regular"),
     ]
 
 
@@ -217,7 +215,7 @@ class AdjustedCamera:
 class OrientationElement:
     """An element of the orientations, over all images."""
 
-    element: Annotated[Element, about("`omega`, `phi`, `kappa`, `x`, `y`, `z`")]
+    element: Annotated[Element, about("angle, or coordinate of the projection centre")]
     median_sigma: Annotated[float, about("median standard deviation")]
     max_sigma: Annotated[float, about("largest standard deviation")]
     pos_mean: Annotated[float, about("mean of POS minus adjusted")]

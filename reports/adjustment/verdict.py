@@ -39,9 +39,11 @@ def _fit(words: Words, results: AdjustmentResults) -> Iterator[str]:
         return
     dof = fmt.count(results.dof)
     yield words.text("fit.tested", steps=steps, sigma0=fmt.number(sigma0), dof=dof)
-    worse = "worse" if sigma0 > 1.0 else "better"
-    fits = p is None or p >= DOUBTFUL_P
-    yield words.of("fit", "agrees" if fits else worse, p=fmt.p_phrase(p))
+    if p is None or p >= DOUBTFUL_P:
+        said = "fit.agrees"
+    else:
+        said = "fit.worse" if sigma0 > 1.0 else "fit.better"
+    yield words.text(said, p=fmt.p_phrase(p))
 
 
 def _errors(words: Words, results: AdjustmentResults) -> str:

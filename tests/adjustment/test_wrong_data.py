@@ -91,7 +91,9 @@ def test_a_single_control_point_against_the_priors_is_warned_of(block):
         found = adjust_block(block, AdjustmentSettings(control=("C3",)))
         return [n.values for n in adjustment_results(found).notices if n.code == "lone_control"]
 
-    assert warned(off) == [{"point": "C3", "parameters": ("gnss_x_shift",)}]
+    (told,) = warned(off)
+    assert told["point"] == "C3"
+    assert "gnss_x_shift" in told["parameters"]
     assert warned(block) == []
 
 
