@@ -92,7 +92,8 @@ def arrows(svg: str, colour: str) -> list[tuple[np.ndarray, np.ndarray]]:
         one, corner, other = _places(head)[:3]
         along = corner - 0.5 * (one + other)
         sharpness = np.hypot(*(corner - one)) / (0.5 * np.hypot(*(other - one)))
-        width = float(re.search(r"stroke-width: ([\d.]+)", looks[1])[1])
+        stated = re.search(r"stroke-width: ([\d.]+)", looks[1])
+        width = float(stated[1]) if stated else 1.0
         found.append(
             (_places(shaft)[0], corner + 0.5 * width * sharpness * along / np.hypot(*along))
         )
