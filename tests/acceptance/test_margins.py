@@ -58,4 +58,3 @@ def test_an_interval_is_that_of_its_own_components_with_its_lower_end_first(quan
     assert found.found == pytest.approx(math.sqrt(np.sum(difference[:, columns] ** 2) / 9))
     assert (found.low, found.high) == (interval.low, interval.high)
     assert found.low < found.found < found.high
-
