@@ -98,7 +98,8 @@ def _residuals(camera: str, cells: Sequence[Row], number: int) -> Drawing:
     look = {"arrowstyle": "-|>", "color": style.BLUE, "lw": 1.0, "mutation_scale": 5}
     look |= {"shrinkA": 0, "shrinkB": 0}
     for start, arrow in zip(place, scale * mean, strict=True):
-        axis.annotate("", tuple(start + arrow), tuple(start), arrowprops=look)
+        axis.annotate("", tuple(start + arrow), tuple(start), arrowprops=look,
+                      annotation_clip=False)  # fmt: skip  # else none that ends outside
     low, high = place.min(axis=0) - size / 2.0, place.max(axis=0) + size / 2.0
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal",
              xlabel="x, px", ylabel="y, px")  # fmt: skip
