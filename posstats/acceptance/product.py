@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
-from typing import Literal
 
-Terrain = Literal["flat", "mountain"]
+from posstats.contract.acceptance import Terrain
 
 FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
     {

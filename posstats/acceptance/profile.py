@@ -2,14 +2,11 @@
 
 import hashlib
 from dataclasses import dataclass, field, fields
-from typing import Literal
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
-from posstats.acceptance.product import Product, Terrain
+from posstats.acceptance.product import Product
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
-
-Exceeding = Literal["fail", "investigate"]
-Component = Literal["horizontal", "vertical"]
+from posstats.contract.acceptance import Exceeding, StatedComponent, Terrain
 
 __all__ = [
     "Contract",
@@ -105,7 +102,7 @@ class Statement:
         claim what was not tested, and are not to be used.
     """
 
-    component: Component
+    component: StatedComponent
     language: str = "en"
     least_points: int = 1
     tested: str = ""
@@ -186,7 +183,7 @@ class Profile:
         """The requirements that apply to a product, in order; possibly none."""
         return tuple(each for each in self.requirements if each.applies_to(product))
 
-    def statement(self, component: Component, language: str = "en") -> Statement | None:
+    def statement(self, component: StatedComponent, language: str = "en") -> Statement | None:
         """The wording for a component in a language, else in English; None without one.
 
         One that is withheld because a contract changed what it rests on counts as none.

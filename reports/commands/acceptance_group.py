@@ -2,13 +2,16 @@
 
 import sys
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from posstats.errors import PosstatsError
 
 from .command_line import FOLDER, clear_errors, default_out
+
+if TYPE_CHECKING:
+    from posstats.contract.acceptance import Language, Orientation, Terrain
 
 
 class _Length(click.ParamType[float]):
@@ -84,9 +87,9 @@ def accept(
     class_v: float | None,
     gsd: float | None,
     scale: float | None,
-    terrain: Literal["flat", "mountain"] | None,
-    orientation: str | None,
-    language: str,
+    terrain: Terrain | None,
+    orientation: Orientation | None,
+    language: Language,
     templates: Path | None,
     out: Path | None,
     no_pdf: bool,

@@ -5,11 +5,12 @@ from collections.abc import Iterator, Mapping
 import pikepdf
 from jinja2 import TemplateError
 
+from posstats.contract.acceptance import Acceptance
 from posstats.errors import PosstatsError
 
 from ..archive.reading import MALFORMED, Archive, decoded, open_pdf, written
 from ..archive.writing import Attachment, render_archive
-from .steps import Steps, Values
+from .steps import Steps
 from .text import page_texts
 from .words import (
     NOT_HERE,
@@ -78,16 +79,14 @@ def rebuilt(archive: Archive, steps: Steps) -> bytes:
         Attachment(name, file.content, file.relationship)  # type: ignore[arg-type]
         for name, file in archive.files.items()
     ]
-    identifier = str(acceptance["document_id"]).encode("ascii")
-    return render_archive(html, attachments, acceptance["created"], identifier)
+    identifier = acceptance.document_id.encode("ascii")
+    return render_archive(html, attachments, acceptance.created, identifier)
 
 
-def made_with(acceptance: Values) -> str:
-    """Versions that the pages depend on, as acceptance values state them."""
-    return (
-        f"posstats {acceptance['posstats_version']},"
-        f" WeasyPrint {acceptance['versions']['weasyprint']}"
-    )
+def made_with(acceptance: Acceptance) -> str:
+    """Versions that the pages depend on, as an acceptance states them."""
+    weasyprint = acceptance.versions.get("weasyprint")
+    return f"posstats {acceptance.posstats_version}, WeasyPrint {weasyprint}"
 
 
 def _differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> list[str]:

@@ -63,7 +63,7 @@ def verify(
         yield failed(READABLE, error)
         return
     stated = archive.acceptance
-    yield answer(READABLE, [], readable(stated.get("document_id"), stated.get("verdict")))
+    yield answer(READABLE, [], readable(stated.document_id, stated.verdict))
     yield from signatures(archive.file, n_signatures, trust, now)
     yield _on_updates(archive, n_signatures)
     yield embedded_files(archive)
