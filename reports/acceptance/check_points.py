@@ -23,7 +23,7 @@ from ..figures.plan_view import (
     many_arrows,
     north_and_scale,
     scale_arrow,
-    view_of_points,
+    view_around,
 )
 from . import units
 from .material import Material, finished, section
@@ -76,7 +76,7 @@ def point_plan(
     found = [point for point in points if point.status == "ok"]
     if not found:
         return None
-    view = view_of_points([*found, *images])
+    view = view_around([*((p.x_m, p.y_m) for p in found), *((i.x_m, i.y_m) for i in images)])
     figure = _plan_figure(view)
     axis = figure.add_subplot()
     images_behind(axis, view, images)
