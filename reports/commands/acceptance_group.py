@@ -31,6 +31,13 @@ class _Length(click.ParamType[float]):
 
 
 LENGTH = _Length()
+LANGUAGE = click.option(
+    "--language",
+    type=click.Choice(["en", "zh"]),
+    default="en",
+    show_default=True,
+    help="Of what is written or said.",
+)
 
 
 @click.command()
@@ -60,13 +67,7 @@ LENGTH = _Length()
     help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
     "results hold]",
 )
-@click.option(
-    "--language",
-    type=click.Choice(["en", "zh"]),
-    default="en",
-    show_default=True,
-    help="Of the document.",
-)
+@LANGUAGE
 @click.option(
     "--templates",
     type=FOLDER,
@@ -194,8 +195,15 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     metavar="DIR",
     help="Templates that you know; pages of others are not believed.",
 )
+@LANGUAGE
 @clear_errors
-def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path | None) -> None:
+def verify(
+    file: Path,
+    inputs: Path | None,
+    trust: Path | None,
+    templates: Path | None,
+    language: "Language",
+) -> None:
     """Verify the acceptance document FILE.pdf: a line a question.
 
     Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
@@ -206,11 +214,12 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
     from ..verification.questions import holds
+    from ..verification.words import line, words_of
     from .verify import verify_file
 
-    answers = verify_file(file, inputs, trust, templates)
+    answers, words = verify_file(file, inputs, trust, templates), words_of(language)
     for each in answers:
-        click.echo(each.line)
+        click.echo(line(words, each))
     if not holds(answers):
         sys.exit(1)
 
