@@ -6,23 +6,24 @@ judge a product would flatter it.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
 from posstats.acceptance.product import Product
 from posstats.arrays import Floats
-from posstats.contract.acceptance import Orientation
 from posstats.contract.check_points import CheckPointResidual
 from posstats.contract.results import ModelParallax, Regression, Results
 from posstats.contract.survey import ImagePlace
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation
 
-ORIENTATIONS: tuple[Orientation, ...] = ("bundle", "adjusted", "selected", "pos")
+ORIENTATIONS: tuple[JudgedOrientation, ...] = get_args(JudgedOrientation)
 """What can be assessed; without a choice the first that the results hold. The order is that of
 what entered the orientation, never that of the outcome at the check points."""
 
 
-def model_parallax_px(model: ModelParallax, orientation: Orientation) -> float | None:
+def model_parallax_px(model: ModelParallax, orientation: JudgedOrientation) -> float | None:
     """Vertical parallax of a stereo model from an orientation; None if it is not known."""
     return {
         "pos": model.pos_px,
@@ -59,7 +60,7 @@ class Evidence:
         drift; 1 if every one was taken off; NaN where they are not known.
     """
 
-    orientation: Orientation
+    orientation: JudgedOrientation
     point: tuple[str, ...]
     difference_m: Floats
     survey_h_m: Floats
@@ -75,7 +76,7 @@ class Evidence:
         return len(self.point)
 
 
-def best_orientation(results: Results) -> Orientation:
+def best_orientation(results: Results) -> JudgedOrientation:
     """The first of `ORIENTATIONS` that the results hold.
 
     Raises
@@ -89,12 +90,12 @@ def best_orientation(results: Results) -> Orientation:
     return held[0]
 
 
-def _held(results: Results) -> list[Orientation]:
+def _held(results: Results) -> list[JudgedOrientation]:
     named = {row.orientation for row in results.check_points}
     return [name for name in ORIENTATIONS if name in named]
 
 
-def evidence(results: Results, orientation: Orientation, product: Product) -> Evidence:
+def evidence(results: Results, orientation: JudgedOrientation, product: Product) -> Evidence:
     """Collect the evidence.
 
     Parameters
@@ -166,12 +167,12 @@ def _quadrant_share(images: Sequence[ImagePlace], points: Sequence[CheckPointRes
     return float(counts.min() / len(points))
 
 
-def _parallax(models: Sequence[ModelParallax], orientation: Orientation) -> Floats:
+def _parallax(models: Sequence[ModelParallax], orientation: JudgedOrientation) -> Floats:
     numbers = (_number(model_parallax_px(model, orientation)) for model in models)
     return np.array([number for number in numbers if np.isfinite(number)], dtype=float)
 
 
-def _remaining_drift(results: Results, orientation: Orientation) -> float:
+def _remaining_drift(results: Results, orientation: JudgedOrientation) -> float:
     if orientation == "pos":
         tested = [("ground", angle, "block") for angle in ("omega", "phi", "kappa")]
     elif orientation == "selected":

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
-from posstats.contract.acceptance import Terrain
+from posstats.settings import TerrainKind
 
 FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
     {
@@ -46,7 +46,7 @@ class Product:
     class_v_m: float | None = None
     gsd_m: float | None = None
     map_scale: float | None = None
-    terrain: Terrain | None = None
+    terrain: TerrainKind | None = None
     lot_size: int | None = None
     sample_size: int | None = None
     survey_sigma_h_m: float | None = None

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, fields
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
 from posstats.acceptance.product import Product
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
-from posstats.contract.acceptance import Exceeding, StatedComponent, Terrain
+from posstats.contract.acceptance import Exceeding, StatedComponent
+from posstats.settings import TerrainKind
 
 __all__ = [
     "Contract",
@@ -58,7 +59,7 @@ class Requirement:
     mandatory: bool = True
     exceeding: Exceeding = "fail"
     threshold: Formula | None = None
-    terrain: Terrain | None = None
+    terrain: TerrainKind | None = None
     when_given: str | None = None
     basis_of_score: bool = False
 

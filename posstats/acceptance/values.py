@@ -23,7 +23,6 @@ from posstats.contract.acceptance import (
     Axis,
     JudgedPoint,
     JudgedRequirement,
-    Language,
     LargestResidual,
     MeanError,
     MeanShift,
@@ -42,6 +41,7 @@ from posstats.contract.record import plain, record
 from posstats.contract.results import Results
 from posstats.contract.survey import InputFile
 from posstats.contract.versions import versions
+from posstats.settings import Language
 from posstats.version import __version__
 
 _AXES: tuple[Axis, ...] = ("x", "y", "z")

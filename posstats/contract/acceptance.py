@@ -13,16 +13,14 @@ from posstats.contract.check_points import CheckPointDifference
 from posstats.contract.notice import Notice, Value
 from posstats.contract.results import AnalysedBlock, AnalysisSettings
 from posstats.contract.survey import InputFile
+from posstats.settings import JudgedOrientation, Language, TerrainKind
 
 SCHEMA = "posstats-acceptance/1"
 
-Language = Literal["en", "zh"]
-Orientation = Literal["bundle", "adjusted", "selected", "pos"]
 Verdict = Literal["accepted", "rejected", "not assessable"]
 Judgement = Literal["pass", "fail", "not assessed"]
 Exceeding = Literal["fail", "investigate"]
 Unit = Literal["m", "px", "1"]
-Terrain = Literal["flat", "mountain"]
 StatedComponent = Literal["horizontal", "vertical"]
 StatementKind = Literal["tested", "tested_with_fewer", "produced"]
 Grade = Literal["excellent", "good", "pass", "fail"]
@@ -57,7 +55,7 @@ class StatedProduct:
     class_v_m: Annotated[float | None, about("accuracy class, vertical")] = None
     gsd_m: Annotated[float | None, about("ground sampling distance")] = None
     map_scale: Annotated[float | None, about("denominator of the map scale")] = None
-    terrain: Annotated[Terrain | None, about("`flat` or `mountain`")] = None
+    terrain: Annotated[TerrainKind | None, about("`flat` or `mountain`")] = None
     lot_size: Annotated[int | None, about("units delivered together")] = None
     sample_size: Annotated[int | None, about("those of them inspected")] = None
     survey_sigma_h_m: Annotated[
@@ -250,7 +248,7 @@ class Acceptance:
     created: Annotated[str, about("ISO 8601 time")]
     language: Annotated[Language, about("`en` or `zh`: of the texts `reason` and `statement`")]
     verdict: Annotated[Verdict, about("`accepted`, `rejected`, `not assessable`")]
-    orientation: Annotated[Orientation, about("what was assessed")]
+    orientation: Annotated[JudgedOrientation, about("what was assessed")]
     orientation_reason: Annotated[
         Notice, about("why: `code` is `asked`, or the orientation's name")
     ]

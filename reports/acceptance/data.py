@@ -18,11 +18,10 @@ from posstats.contract.acceptance import (
     Acceptance,
     AttachedFile,
     ChosenStatement,
-    Language,
-    Orientation,
 )
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation, Language
 
 from ..archive.writing import Attachment
 from ..block.csv_files import write_tables
@@ -47,7 +46,7 @@ class Demand:
     profile: Profile
     contract: Contract
     product: Product
-    orientation: Orientation | None
+    orientation: JudgedOrientation | None
     language: Language
 
 
@@ -148,7 +147,7 @@ def reassess(
 def _assembled(
     results: Results,
     demand: Demand,
-    orientation: Orientation,
+    orientation: JudgedOrientation,
     occasion: Occasion,
     listed: tuple[AttachedFile, ...],
 ) -> Acceptance:

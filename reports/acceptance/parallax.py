@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from posstats.acceptance.evidence import model_parallax_px
-from posstats.contract.acceptance import Orientation
 from posstats.contract.results import ModelParallax, Results
+from posstats.settings import JudgedOrientation
 
 from ..block.bar_figures import Bars, bar_figure
 from ..block.view import strips_with_models
@@ -41,7 +41,7 @@ def parallax(material: Material) -> Part:
     return section(words, "parallax", content)
 
 
-def series(words: Words, results: Results, orientation: Orientation) -> list[Series]:
+def series(words: Words, results: Results, orientation: JudgedOrientation) -> list[Series]:
     """POS, assessed orientation if its parallax is known, relative orientation."""
     readers: dict[str, Reader] = {words.orientation("pos"): lambda model: model.pos_px}
     if fmt.present(model_parallax_px(model, orientation) for model in results.models):
@@ -53,7 +53,7 @@ def series(words: Words, results: Results, orientation: Orientation) -> list[Ser
 
 
 def parallax_table(
-    words: Words, results: Results, shown: Sequence[Series], orientation: Orientation
+    words: Words, results: Results, shown: Sequence[Series], orientation: JudgedOrientation
 ) -> Table:
     """Mean and largest model of every strip, and of the block."""
     strips = list(shown[0].of_strip)

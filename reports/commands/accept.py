@@ -9,10 +9,11 @@ from pathlib import Path
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
-from posstats.contract.acceptance import Acceptance, Language, Orientation
+from posstats.contract.acceptance import Acceptance
 from posstats.contract.files import from_json, to_json
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation, Language
 
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document
@@ -35,7 +36,7 @@ class Wish:
     profile: str | None
     contract: Path | None
     product: Product
-    orientation: Orientation | None
+    orientation: JudgedOrientation | None
     language: Language
     templates: Path | None
 
@@ -100,7 +101,7 @@ def _profile_and_contract(wish: Wish) -> tuple[Profile, Contract]:
 
 
 def _results(
-    source: Path, orientation: Orientation | None, bar: Advance
+    source: Path, orientation: JudgedOrientation | None, bar: Advance
 ) -> tuple[Results, bytes, dict[str, bytes]]:
     """Results, their text, and the block.toml that they come from where the block is given."""
     if not source.is_dir():
@@ -108,8 +109,9 @@ def _results(
         return from_json(text, Results, str(source)), text, {}
     # an analysis takes a second to import, and results.json needs none
     from posstats.analysis.results import results
-    from posstats.analysis.steps import Settings, analyse
+    from posstats.analysis.steps import analyse
     from posstats.formats.block_folder import read_block
+    from posstats.settings import Settings
 
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")

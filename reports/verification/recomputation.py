@@ -4,10 +4,11 @@ from pathlib import Path, PurePath
 
 from posstats.adjustment.calibration import calibrated
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.contract.results import AnalysisSettings, Results
 from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
+from posstats.settings import Settings
 
 
 def recompute(folder: Path, pattern: Results) -> Results:
