@@ -4,30 +4,29 @@ The mean shift of the check points is kept everywhere: a shift estimated from th
 judge a product would flatter it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from posstats.acceptance.product import Product
 from posstats.arrays import Floats
+from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.results import ModelParallax, Regression, Results
+from posstats.contract.survey import ImagePlace
 from posstats.errors import PosstatsError
-
-Results = Mapping[str, Any]
-Row = Mapping[str, Any]
 
 ORIENTATIONS = ("bundle", "adjusted", "selected", "pos")
 """What can be assessed; without a choice the first that the results hold. The order is that of
 what entered the orientation, never that of the outcome at the check points."""
 
-PARALLAX_KEYS = {
-    "pos": "pos_px",
-    "selected": "corrected_px",
-    "adjusted": "adjusted_px",
-    "bundle": "bundle_px",
+PARALLAX: dict[str, Callable[[ModelParallax], float | None]] = {
+    "pos": lambda model: model.pos_px,
+    "selected": lambda model: model.corrected_px,
+    "adjusted": lambda model: model.adjusted_px,
+    "bundle": lambda model: model.bundle_px,
 }
-"""Keys of the models' parallax from each orientation."""
+"""RMS vertical parallax of a model from each orientation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,7 @@ def best_orientation(results: Results) -> str:
 
 
 def _held(results: Results) -> list[str]:
-    named = {row["orientation"] for row in results["check_points"]}
+    named = {row.orientation for row in results.check_points}
     return [name for name in ORIENTATIONS if name in named]
 
 
@@ -98,7 +97,7 @@ def evidence(results: Results, orientation: str, product: Product) -> Evidence:
     Parameters
     ----------
     results
-        The dictionary of results.json.
+        Of an analysis.
     orientation
         One of `ORIENTATIONS`.
     product
@@ -114,21 +113,21 @@ def evidence(results: Results, orientation: str, product: Product) -> Evidence:
         raise PosstatsError(
             f"the results hold no orientation {orientation}: choose one of {', '.join(held)}"
         )
-    rows = [r for r in results["check_point_residuals"] if r["orientation"] == orientation]
-    good = [row for row in rows if row["status"] == "ok"]
+    rows = [r for r in results.check_point_residuals if r.orientation == orientation]
+    good = [row for row in rows if row.status == "ok"]
     survey_h, survey_v = _survey(good, product)
-    bundle = (results.get("bundle") or {}) if orientation == "bundle" else {}
+    bundle = results.bundle if orientation == "bundle" else None
     return Evidence(
         orientation=orientation,
-        point=tuple(str(row["point"]) for row in good),
-        difference_m=_columns(good, ("dx_m", "dy_m", "dz_m")),
+        point=tuple(row.point for row in good),
+        difference_m=_columns([(row.dx_m, row.dy_m, row.dz_m) for row in good], 3),
         survey_h_m=survey_h,
         survey_v_m=survey_v,
         n_given=len(rows),
-        quadrant_share=_quadrant_share(results["images"], good),
-        parallax_px=_parallax(results["models"], PARALLAX_KEYS[orientation]),
-        image_rms_px=_number(bundle.get("image_rms_px")),
-        sigma0=_number(bundle.get("sigma0")),
+        quadrant_share=_quadrant_share(results.images, good),
+        parallax_px=_parallax(map(PARALLAX[orientation], results.models)),
+        image_rms_px=_number(bundle.image_rms_px if bundle else None),
+        sigma0=_number(bundle.sigma0 if bundle else None),
         drift_p=_remaining_drift(results, orientation),
     )
 
@@ -137,18 +136,17 @@ def _number(value: float | None) -> float:
     return float("nan") if value is None else float(value)
 
 
-def _columns(rows: Sequence[Row], names: Sequence[str]) -> Floats:
+def _columns(rows: Sequence[Sequence[float | None]], k: int) -> Floats:
     """(n, k), NaN where null."""
-    values = [[_number(row.get(name)) for name in names] for row in rows]
-    return np.array(values, dtype=float).reshape(len(rows), len(names))
+    return np.array(rows, dtype=float).reshape(len(rows), k)
 
 
-def _survey(rows: Sequence[Row], product: Product) -> tuple[Floats, Floats]:
+def _survey(rows: Sequence[CheckPointResidual], product: Product) -> tuple[Floats, Floats]:
     """(n,) radial horizontal and vertical; sigma_xy is that of X and of Y.
 
     Where both block and product state one, the larger counts: neither may flatter the product.
     """
-    stated = _columns(rows, ("survey_sigma_xy_m", "survey_sigma_z_m"))
+    stated = _columns([(row.survey_sigma_xy_m, row.survey_sigma_z_m) for row in rows], 2)
     horizontal, vertical = np.sqrt(2.0) * stated[:, 0], stated[:, 1]
     return (
         np.fmax(horizontal, _number(product.survey_sigma_h_m)),
@@ -156,42 +154,41 @@ def _survey(rows: Sequence[Row], product: Product) -> tuple[Floats, Floats]:
     )
 
 
-def _quadrant_share(images: Sequence[Row], points: Sequence[Row]) -> float:
+def _quadrant_share(images: Sequence[ImagePlace], points: Sequence[CheckPointResidual]) -> float:
     """Quadrants of the rectangle, along the crs axes, around the ground that the images show."""
-    corners = [corner for row in images for corner in row.get("footprint") or ()]
+    corners = [corner for row in images for corner in row.footprint or ()]
     if not corners or not points:
         return float("nan")
     plan = np.array(corners, dtype=float)
     middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
-    east, north = (_columns(points, ("x_m", "y_m")) > middle).T
+    east, north = (_columns([(point.x_m, point.y_m) for point in points], 2) > middle).T
     counts = np.bincount(2 * east + north, minlength=4)
     return float(counts.min() / len(points))
 
 
-def _parallax(models: Sequence[Row], key: str) -> Floats:
-    numbers = (_number(row.get(key)) for row in models)
+def _parallax(values: Iterable[float | None]) -> Floats:
+    numbers = map(_number, values)
     return np.array([number for number in numbers if np.isfinite(number)], dtype=float)
 
 
 def _remaining_drift(results: Results, orientation: str) -> float:
+    tested: list[tuple[str, str, str]]
     if orientation == "pos":
         tested = [("ground", angle, "block") for angle in ("omega", "phi", "kappa")]
     elif orientation == "selected":
         tested = [
-            (row["frame"], row["angle"], row["scope"])
-            for row in results["selection"]
-            if row["form"] != "linear"
+            (row.frame, row.angle, row.scope) for row in results.selection if row.form != "linear"
         ]
     else:
         return float("nan")
-    fits = {(row["frame"], row["angle"], row["scope"]): row for row in results["regression"]}
+    fits = {(row.frame, row.angle, row.scope): row for row in results.regression}
     p = [_drift_p(fits[each]) for each in tested if each in fits]
     if len(p) < len(tested) or any(np.isnan(p)):
         return float("nan")
     return min(1.0, len(p) * min(p)) if p else 1.0
 
 
-def _drift_p(fit: Row) -> float:
+def _drift_p(fit: Regression) -> float:
     """Of GLS, which is honest about correlated errors; of OLS where errors have no covariance."""
-    honest = _number(fit.get("gls_p_value"))
-    return _number(fit.get("p_value")) if np.isnan(honest) else honest
+    honest = _number(fit.gls_p_value)
+    return _number(fit.p_value) if np.isnan(honest) else honest

@@ -20,12 +20,13 @@ from posstats.acceptance.assessment import Assessment, Finding
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.reasons import Reason
+from posstats.contract.files import as_values
 from posstats.contract.record import plain
+from posstats.contract.results import Results
 from posstats.contract.versions import versions
 from posstats.version import __version__
 
 Row = dict[str, Any]
-Results = Mapping[str, Any]
 
 SCHEMA = "posstats-acceptance/1"
 _AXES = ("x", "y", "z")
@@ -65,7 +66,7 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
     assessment
         Of an orientation that the results hold.
     results
-        The dictionary of results.json.
+        Of an analysis.
     occasion
         All else that the document says.
     """
@@ -85,9 +86,9 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
             "profile": _profile(assessment.profile),
             "product": asdict(assessment.product),
             "contract": parties,
-            "block": results["block"],
+            "block": as_values(results.block),
             "results": {"file": "results.json", "sha256": occasion.results_sha256},
-            "settings": results["settings"],
+            "settings": as_values(results.settings),
             "requirements": [_requirement(each) for each in assessment.findings],
             "statements": [asdict(each) for each in assessment.statements],
             "quality_grade": None
@@ -95,7 +96,7 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
             else {"score": assessment.score, "grade": assessment.grade},
             "accuracy": _accuracy(accuracy_statement(evidence), evidence),
             "check_points": list(_check_points(assessment, results)),
-            "warnings": results["warnings"],
+            "warnings": results.warnings,
         }
     )
     return values
@@ -220,7 +221,7 @@ def _check_points(assessment: Assessment, results: Results) -> Iterator[Row]:
         for each in assessment.findings
         if each.threshold is not None
     }
-    for row in results["check_point_residuals"]:
+    for row in as_values(results.check_point_residuals):
         if row["orientation"] != assessment.evidence.orientation:
             continue
         known = row["status"] == "ok"

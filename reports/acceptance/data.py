@@ -16,12 +16,12 @@ from posstats.acceptance.profile import Contract, Profile, ProfileFile
 from posstats.acceptance.profile_files import profile_of_files
 from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values, document_id
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..archive.writing import Attachment
-from ..block.view import Results
+from ..block.csv_files import write_tables
 from ..document import format as fmt
-from ..document import table as tables
 from . import words as acceptance_words
 
 Values = dict[str, Any]
@@ -66,7 +66,7 @@ def embedded(
     ]
     files += [Attachment(name, content, "Source") for name, content in others.items()]
     with TemporaryDirectory() as folder:
-        tables.write_tables(results, Path(folder))
+        write_tables(results, Path(folder))
         files += [
             Attachment(f"tables/{path.name}", path.read_bytes(), "Supplement")
             for path in sorted(Path(folder).iterdir())
@@ -82,7 +82,7 @@ def assembled(
     Parameters
     ----------
     results
-        The dictionary of results.json.
+        What the analysis found.
     files
         All that is embedded but itself.
     created

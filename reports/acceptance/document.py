@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..block.view import Results
+from posstats.contract.results import Results
+
 from ..document import format as fmt
 from ..document.front import Fact, Signature, Verdict
 from ..document.key_figure import KeyFigure
@@ -29,7 +30,7 @@ def build(acceptance: Mapping[str, Any], results: Results, unshown: str = "") ->
     acceptance
         The dictionary of ``acceptance.json``.
     results
-        The dictionary of ``results.json``.
+        What the analysis found.
     unshown
         Characters that no typeface at hand can show.
     """

@@ -1,12 +1,14 @@
 """Tables of the evidence behind an acceptance: check points, parallax, regression, decisions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from posstats.acceptance.evidence import PARALLAX_KEYS
+from posstats.acceptance.evidence import PARALLAX
+from posstats.contract.results import ModelParallax, Regression, Results, Selection
 
-from ..block.view import Results, Row, decided_by_strip, first, rows, setting, strips_with_models
+from ..block.view import decided_by_strip, strips_with_models
 from ..document import format as fmt
+from ..document.rows import first, rows
 from ..document.table import (
     Column,
     Table,
@@ -19,8 +21,12 @@ from ..document.table import (
 from . import units
 from .words import Words
 
-RELATIVE = "independent_px"
 SHOWN_DECISIONS = 40
+Series = tuple[str, Callable[[ModelParallax], float | None]]
+"""A title, and the parallax of a model that it stands for."""
+
+Point = Mapping[str, Any]
+
 _DIFFERENCES = (("ΔX", "dx_m"), ("ΔY", "dy_m"), ("ΔZ", "dz_m"), ("ΔH", "dh_m"))
 
 
@@ -46,18 +52,18 @@ def check_points(words: Words, acceptance: Mapping[str, Any]) -> Table:
 def parallax_by_strip(words: Words, results: Results, orientation: str) -> Table:
     """Vertical parallax of the strips: POS, assessed orientation, relative orientation."""
     kept = strips_with_models(results)
-    models = {strip: rows(results, "models", strip=strip) for strip in kept}
+    models = {strip: rows(results.models, strip=strip) for strip in kept}
     columns = [
         text_column(words.text("column.strip"), [*kept, words.text("row.block")]),
         count_column(words.text("column.models"),
-                     [*(len(part) for part in models.values()), len(rows(results, "models"))]),
+                     [*(len(part) for part in models.values()), len(results.models)]),
     ]  # fmt: skip
     series = parallax_series(words, results, orientation)
-    for key, title in series:
-        every = [m[key] for m in rows(results, "models")]
-        columns += _parallax(words, [*([m[key] for m in models[s]] for s in kept), every], title)
+    for title, value in series:
+        groups = [[value(m) for m in part] for part in (*models.values(), results.models)]
+        columns += _parallax(words, groups, title)
     notes = [words.text("note.parallax")]
-    if PARALLAX_KEYS[orientation] not in dict(series):
+    if not _is_known(results, orientation):
         notes.append(
             words.text("note.parallax_missing", orientation=words.orientation(orientation))
         )
@@ -65,34 +71,37 @@ def parallax_by_strip(words: Words, results: Results, orientation: str) -> Table
     return Table("parallax", words.text("table.parallax"), tuple(columns), tuple(notes), strong)
 
 
-def parallax_series(words: Words, results: Results, orientation: str) -> list[tuple[str, str]]:
-    """Keys of the models' parallax and their titles: POS, assessed if known, relative."""
-    keys = {"pos_px": words.orientation("pos")}
-    assessed = PARALLAX_KEYS[orientation]
-    if fmt.present(m.get(assessed) for m in rows(results, "models")):
-        keys[assessed] = words.orientation(orientation)
-    keys[RELATIVE] = words.text("orientation.relative")
-    return list(keys.items())
+def parallax_series(words: Words, results: Results, orientation: str) -> list[Series]:
+    """Titles of the models' parallax with its values: POS, assessed if known, relative."""
+    shown = ["pos"]
+    if orientation != "pos" and _is_known(results, orientation):
+        shown.append(orientation)
+    series: list[Series] = [(words.orientation(name), PARALLAX[name]) for name in shown]
+    return [*series, (words.text("orientation.relative"), lambda model: model.independent_px)]
+
+
+def _is_known(results: Results, orientation: str) -> bool:
+    return bool(fmt.present(map(PARALLAX[orientation], results.models)))
 
 
 def regression(words: Words, results: Results) -> Table:
     """Lines of the angle errors over time, for the block (or the strips decided by)."""
     kept = _regressions(results)
     unit = fmt.rate_unit(
-        row[key] for row in kept for key in ("slope_rad_per_s", "gls_slope_rad_per_s")
+        rate for row in kept for rate in (row.slope_rad_per_s, row.gls_slope_rad_per_s)
     )
     columns = (
-        text_column(words.text("column.angle"), [words.known("angle", r["angle"]) for r in kept]),
-        text_column(words.text("column.scope"), [_scope(words, r["scope"]) for r in kept]),
-        count_column(words.text("column.images"), [r["n"] for r in kept]),
+        text_column(words.text("column.angle"), [words.known("angle", r.angle) for r in kept]),
+        text_column(words.text("column.scope"), [_scope(words, r.scope) for r in kept]),
+        count_column(words.text("column.images"), [r.n for r in kept]),
         number_column(words.text("column.slope"), unit.name,
-                      [unit.scaled(r["slope_rad_per_s"]) for r in kept], group="OLS"),
-        Column("R²", tuple(fmt.fixed(r["r_squared"], 3) for r in kept), group="OLS"),
-        p_column("p", [r["p_value"] for r in kept], "OLS"),
+                      [unit.scaled(r.slope_rad_per_s) for r in kept], group="OLS"),
+        Column("R²", tuple(fmt.fixed(r.r_squared, 3) for r in kept), group="OLS"),
+        p_column("p", [r.p_value for r in kept], "OLS"),
         number_column(words.text("column.slope"), unit.name,
-                      [unit.scaled(r["gls_slope_rad_per_s"]) for r in kept], group="GLS"),
+                      [unit.scaled(r.gls_slope_rad_per_s) for r in kept], group="GLS"),
         _slope_interval(words, kept, unit),
-        p_column("p", [r["gls_p_value"] for r in kept], "GLS"),
+        p_column("p", [r.gls_p_value for r in kept], "GLS"),
     )  # fmt: skip
     return Table("regression", words.text("table.regression"), columns,
                  (words.text("note.regression"),))  # fmt: skip
@@ -100,26 +109,26 @@ def regression(words: Words, results: Results) -> Table:
 
 def decisions(words: Words, results: Results) -> Table:
     """Which angle errors were taken off before the assessment."""
-    chosen = rows(results, "selection")
+    chosen = results.selection
     if decided_by_strip(results):
-        chosen = [row for row in chosen if row["correct"]]
+        chosen = tuple(row for row in chosen if row.correct)
     shown = chosen[:SHOWN_DECISIONS]
-    fits = [first(results, "regression", angle=r["angle"], frame=r["frame"],
-                  scope=r.get("scope") or "block") for r in shown]  # fmt: skip
+    fits = [first(results.regression, angle=r.angle, frame=r.frame,
+                  scope=r.scope) for r in shown]  # fmt: skip
     columns = (
-        text_column(words.text("column.angle"), [words.known("angle", r["angle"]) for r in shown]),
-        text_column(words.text("column.frame"), [words.known("frame", r["frame"]) for r in shown]),
+        text_column(words.text("column.angle"), [words.known("angle", r.angle) for r in shown]),
+        text_column(words.text("column.frame"), [words.known("frame", r.frame) for r in shown]),
         text_column(words.text("column.scope"),
-                    [_scope(words, r.get("scope") or "block") for r in shown]),
-        Column("R²", tuple(fmt.fixed(fit.get("r_squared"), 3) for fit in fits)),
+                    [_scope(words, r.scope) for r in shown]),
+        Column("R²", tuple(fmt.fixed(fit.r_squared if fit else None, 3) for fit in fits)),
         p_column("p", [_decisive_p(*both) for both in zip(shown, fits, strict=True)]),
-        text_column(words.text("column.decision"), [words.of("form", r["form"]) for r in shown]),
+        text_column(words.text("column.decision"), [words.of("form", r.form) for r in shown]),
     )  # fmt: skip
     notes = [words.text("note.decisions", rules=_rules(words, results))]
     if len(shown) < len(chosen):
         notes.append(words.text("note.decisions_shown", shown=fmt.count(len(shown)),
                                 total=fmt.count(len(chosen))))  # fmt: skip
-    strong = frozenset(k for k, row in enumerate(shown) if row["correct"])
+    strong = frozenset(k for k, row in enumerate(shown) if row.correct)
     strong = strong if len(strong) < len(shown) else frozenset()
     return Table("decisions", words.text("table.decisions"), columns, tuple(notes), strong)
 
@@ -127,10 +136,10 @@ def decisions(words: Words, results: Results) -> Table:
 def observability(words: Words, results: Results) -> Table:
     """What the tie points leave open; scopes of which the same is to be said share a row."""
     scopes: dict[tuple[str, int], list[str]] = {}
-    for row in rows(results, "observability"):
-        if row["unobservable"]:
-            motions = words.catalogue.joined(words.known("motion", m) for m in row["unobservable"])
-            scopes.setdefault((motions, len(row["images"])), []).append(_scope(words, row["scope"]))
+    for row in results.observability:
+        if row.unobservable:
+            motions = words.catalogue.joined(words.known("motion", m) for m in row.unobservable)
+            scopes.setdefault((motions, len(row.images)), []).append(_scope(words, row.scope))
     columns = (
         prose_column(words.text("column.scope"), map(words.catalogue.joined, scopes.values())),
         prose_column(words.text("column.unobservable"), [motions for motions, _ in scopes]),
@@ -139,7 +148,7 @@ def observability(words: Words, results: Results) -> Table:
     return Table("observability", words.text("table.observability"), columns)
 
 
-def _differences(words: Words, points: Sequence[Row]) -> list[Column]:
+def _differences(words: Words, points: Sequence[Point]) -> list[Column]:
     values = [p[key] for p in points for _, key in _DIFFERENCES]
     decimals = units.decimals_for(values, words.unit)
     unit = words.unit.unit
@@ -150,7 +159,7 @@ def _differences(words: Words, points: Sequence[Row]) -> list[Column]:
     ]  # fmt: skip
 
 
-def _survey(words: Words, points: Sequence[Row]) -> list[Column]:
+def _survey(words: Words, points: Sequence[Point]) -> list[Column]:
     keys = (("column.plane", "survey_sigma_xy_m"), ("column.height", "survey_sigma_z_m"))
     values = [p[key] for p in points for _, key in keys]
     if not fmt.present(values):
@@ -163,7 +172,7 @@ def _survey(words: Words, points: Sequence[Row]) -> list[Column]:
     ]  # fmt: skip
 
 
-def _remark(words: Words, point: Row) -> str:
+def _remark(words: Words, point: Point) -> str:
     if point["status"] != "ok":
         return words.known("status", point["status"])
     return words.text("status.blunder") if point["blunder"] else ""
@@ -184,30 +193,32 @@ def _parallax(
     return mean, most
 
 
-def _regressions(results: Results) -> list[Row]:
+def _regressions(results: Results) -> list[Regression]:
     by_strip = decided_by_strip(results)
     return [
-        row for row in rows(results, "regression")
-        if not row.get("reason") and (row["scope"] == "block" or by_strip)
+        row for row in results.regression
+        if not row.reason and (row.scope == "block" or by_strip)
     ][:SHOWN_DECISIONS]  # fmt: skip
 
 
-def _slope_interval(words: Words, kept: Sequence[Row], unit: fmt.Unit) -> Column:
-    bounds = [row.get("gls_slope_ci95") or (None, None) for row in kept]
+def _slope_interval(words: Words, kept: Sequence[Regression], unit: fmt.Unit) -> Column:
+    bounds = [row.gls_slope_ci95 or (None, None) for row in kept]
     cells = tuple(
         words.interval(*(fmt.number(unit.scaled(each)) for each in both)) for both in bounds
     )
     return Column(words.text("column.interval"), cells, unit.name, group="GLS")
 
 
-def _decisive_p(decision: Row, fit: Row) -> float | None:
-    key = "gls_p_value" if decision.get("fit") == "gls" else "p_value"
-    value: float | None = fit.get("constant_p_value" if decision["form"] == "constant" else key)
-    return value
+def _decisive_p(decision: Selection, fit: Regression | None) -> float | None:
+    if fit is None:
+        return None
+    if decision.form == "constant":
+        return fit.constant_p_value
+    return fit.gls_p_value if decision.fit == "gls" else fit.p_value
 
 
 def _rules(words: Words, results: Results) -> str:
-    return words.known("setting_value", setting(results, "rules", "paper"))
+    return words.known("setting_value", results.settings.rules)
 
 
 def _scope(words: Words, scope: str) -> str:

@@ -1,7 +1,7 @@
 """Figures of the acceptance document, their words from its catalogue."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,13 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from posstats.arrays import Floats
+from posstats.contract.results import ImageAngleErrors, ModelParallax, Results
 
 from ..block import line_figures as figure_regression
 from ..block import plan_figures as figure_plan
 from ..block.bar_figures import Bars, bar_figure
-from ..block.view import Results, Row, angles, rows, setting, strips_with_models
+from ..block.view import angles, strips_with_models
 from ..document import format as fmt
 from ..document.drawing import Drawing
+from ..document.rows import rows
 from ..figures import style
 from ..figures.plan_view import (
     PlanView,
@@ -24,11 +26,12 @@ from ..figures.plan_view import (
     many_arrows,
     north_and_scale,
     scale_arrow,
-    view_of,
+    view_around,
 )
 from ..typefaces import cjk
 from . import units
 from .evidence import parallax_series
+from .units import Row
 from .words import Words
 
 MAX_SHARE = 2.0  # of a limit; beyond it a value is drawn at the edge
@@ -97,10 +100,10 @@ def point_plan(words: Words, acceptance: Mapping[str, Any], results: Results) ->
     points = [p for p in acceptance["check_points"] if p["status"] == "ok"]
     if not points:
         return None
-    stations = [{"x_m": r["x_m"], "y_m": r["y_m"]} for r in rows(results, "images")]
-    view = view_of([*points, *stations])
+    stations = [(image.x_m, image.y_m) for image in results.images]
+    view = view_around([*((p["x_m"], p["y_m"]) for p in points), *stations])
     axis = _plan_axis(view)
-    figure_plan.images_behind(axis, view, results)
+    figure_plan.images_behind(axis, view, results.images)
     blunders = [(p["x_m"], p["y_m"]) for p in points if p["blunder"]]
     if blunders:
         axis.plot(*view.drawn(blunders), "o", ms=11, mfc="none", mec=style.PURPLE, mew=1.6,
@@ -138,8 +141,8 @@ def parallax(words: Words, results: Results, orientation: str) -> Drawing | None
     """Mean vertical parallax per strip: POS, assessed orientation, relative orientation."""
     kept = strips_with_models(results)
     groups = [
-        _bars(results, kept, key, title)
-        for key, title in parallax_series(words, results, orientation)
+        _bars(results, kept, title, value)
+        for title, value in parallax_series(words, results, orientation)
     ]
     if not groups[-1].of_strip:
         return None
@@ -150,7 +153,7 @@ def parallax(words: Words, results: Results, orientation: str) -> Drawing | None
 
 def regression(words: Words, results: Results) -> Drawing | None:
     """Errors of the three angles over time with the fitted lines, one panel each."""
-    frame = setting(results, "frame", "ground")
+    frame = results.settings.frame
     data = {a: figure_regression.used_errors(results, a) for a in angles(frame)}
     shown = {angle: part for angle, part in data.items() if part}
     if not shown:
@@ -166,10 +169,15 @@ def regression(words: Words, results: Results) -> Drawing | None:
 
 
 def _angle_panel(
-    words: Words, axis: Axes, results: Results, frame: str, angle: str, part: Sequence[Row]
+    words: Words,
+    axis: Axes,
+    results: Results,
+    frame: str,
+    angle: str,
+    part: Sequence[ImageAngleErrors],
 ) -> None:
-    errors = [row[f"{angle}_rad"] for row in part]
-    start = min(row["time_s"] for row in part)
+    errors = figure_regression.errors_of(part, angle)
+    start = min(row.time_s for row in part)
     labels = words.text("legend.ols"), words.text("legend.gls")
     panel = figure_regression.Panel(axis, fmt.angle_unit(errors), start, labels)
     lines = figure_regression.fitted_lines(results, frame, angle)
@@ -241,8 +249,13 @@ def _histogram(
     axis.yaxis.set_major_locator(MaxNLocator(5, integer=True))
 
 
-def _bars(results: Results, strips: Sequence[str], key: str, title: str) -> Bars:
-    values = {s: fmt.present(m[key] for m in rows(results, "models", strip=s)) for s in strips}
+def _bars(
+    results: Results,
+    strips: Sequence[str],
+    title: str,
+    value: Callable[[ModelParallax], float | None],
+) -> Bars:
+    values = {s: fmt.present(map(value, rows(results.models, strip=s))) for s in strips}
     means = {s: sum(part) / len(part) for s, part in values.items() if part}
     every = [value for part in values.values() for value in part]
     mean = sum(every) / len(every) if every else None

@@ -4,8 +4,11 @@ from collections.abc import Callable, Mapping
 from importlib import resources
 from typing import Any
 
+import msgspec
 from markupsafe import Markup
 
+from posstats.contract.files import as_values
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..document.catalogue import catalogue
@@ -21,7 +24,7 @@ BOX = "□"  # in figures, for a character that cannot be drawn
 
 @garbage_kept()
 def render_document(
-    acceptance: Mapping[str, Any], results: Mapping[str, Any], templates: Mapping[str, bytes]
+    acceptance: Mapping[str, Any], results: Results, templates: Mapping[str, bytes]
 ) -> str:
     """Render the document as HTML: stylesheet, typefaces and figures inside, nothing loaded.
 
@@ -30,7 +33,7 @@ def render_document(
     acceptance
         The dictionary of ``acceptance.json``.
     results
-        The dictionary of ``results.json``.
+        What the analysis found.
     templates
         The user's templates and images by file name; empty for ours alone.
 
@@ -53,15 +56,15 @@ def render_document(
         ) from error
 
 
-def unshown(acceptance: Mapping[str, Any], results: Mapping[str, Any]) -> str:
+def unshown(acceptance: Mapping[str, Any], results: Results) -> str:
     """Characters of names and ids that no typeface at hand can show."""
     return cjk.unshown(repr((acceptance, _named(results))))
 
 
 def _rendered(
-    acceptance: Mapping[str, Any], results: Mapping[str, Any], templates: Mapping[str, bytes]
+    acceptance: Mapping[str, Any], results: Results, templates: Mapping[str, bytes]
 ) -> str:
-    acceptance, results = _mapped(acceptance, cjk.legible), _mapped(results, cjk.legible)
+    acceptance, results = _mapped(acceptance, cjk.legible), _with_texts(results, cjk.legible)
     lost = unshown(acceptance, results)
     words = catalogue(acceptance["language"], *DOMAINS)
     environment = acceptance_templates.environment(templates, words)
@@ -85,15 +88,20 @@ def _stylesheet(page_numbers: Markup) -> Markup:
     return Markup("\n".join([*sheets, page_numbers]))  # noqa: S704 - ours
 
 
-def _named(results: Mapping[str, Any]) -> list[Any]:
+def _named(results: Results) -> list[object]:
     """What of the results is shown as text."""
-    return [results.get("warnings"), *({row["strip"] for row in results.get("models") or ()})]
+    return [results.warnings, *({row.strip for row in results.models})]
 
 
-def _drawable(results: Mapping[str, Any], lost: str) -> Mapping[str, Any]:
+def _drawable(results: Results, lost: str) -> Results:
     """Results whose texts figures can draw."""
     boxes = dict.fromkeys(map(ord, lost), BOX)
-    return _mapped(results, lambda text: text.translate(boxes)) if lost else results
+    return _with_texts(results, lambda text: text.translate(boxes)) if lost else results
+
+
+def _with_texts(results: Results, function: Callable[[str], str]) -> Results:
+    """The results with every text changed by a function."""
+    return msgspec.convert(_mapped(as_values(results), function), Results)
 
 
 def _mapped(value: Any, function: Callable[[str], str]) -> Any:

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..block.view import Results, rows
+from posstats.contract.results import Results
+
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
 from ..document.drawing import Drawing
@@ -29,7 +30,7 @@ def parts(
     words
         Of the document.
     acceptance, results
-        The dictionaries of ``acceptance.json`` and ``results.json``.
+        The dictionary of ``acceptance.json``, and what the analysis found.
     drawings
         The figures by name.
     unshown
@@ -109,7 +110,7 @@ def _check_points(words: Words, acceptance: Mapping[str, Any], drawings: Drawing
 def _parallax(
     words: Words, acceptance: Mapping[str, Any], results: Results, drawings: Drawings
 ) -> Part:
-    if not rows(results, "models"):
+    if not results.models:
         return _part(words, "parallax", [Paragraph(words.text("parallax.none"))])
     table = evidence.parallax_by_strip(words, results, acceptance["orientation"])
     content: list[Content] = [Paragraph(words.text("parallax.intro")), *filled([table])]
@@ -141,7 +142,7 @@ def _limits(words: Words, acceptance: Mapping[str, Any], results: Results, unsho
     ]
     told = {
         "notes": acceptance["profile"]["notes"],
-        "warnings": [*acceptance["warnings"], *(results.get("warnings") or ())],
+        "warnings": [*acceptance["warnings"], *results.warnings],
     }
     for name, texts in told.items():
         if texts:

@@ -3,10 +3,19 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..block.statistics_tables import pairs
-from ..block.view import Results
+from posstats.contract.files import as_values
+from posstats.contract.results import Results
+
 from ..document import format as fmt
-from ..document.table import Column, Table, count_column, p_column, prose_column, text_column
+from ..document.table import (
+    Column,
+    Table,
+    count_column,
+    p_column,
+    pairs,
+    prose_column,
+    text_column,
+)
 from . import units
 from .units import Row
 from .words import Words, evidence, product
@@ -143,7 +152,7 @@ def software(words: Words, acceptance: Acceptance) -> Table:
 
 def settings(words: Words, results: Results) -> Table:
     """Settings of the analysis that the acceptance rests on."""
-    stated = results.get("settings") or {}
+    stated = as_values(results.settings)
     accuracies = {"position_m": ("m", 1.0), "angle_rad": ("mrad", 1e3), "image_px": ("px", 1.0)}
     shown = [
         (words.text(f"setting.{key}"), words.known("setting_value", str(stated[key])))

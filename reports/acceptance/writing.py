@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from posstats.contract.files import to_json
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..archive.writing import Attachment, render_archive
@@ -18,7 +19,7 @@ _LARGEST_TEMPLATES = 10_000_000
 
 def write_document(
     acceptance: dict[str, Any],
-    results: Mapping[str, Any],
+    results: Results,
     templates: Mapping[str, bytes],
     files: Sequence[Attachment],
     folder: Path,

@@ -1,12 +1,17 @@
 """The document of the report on an adjustment: what it says around its tables and figures."""
 
+import msgspec
+
+from posstats.contract.check_points import CheckPointStatistics
+from posstats.contract.survey import InputFile
+
 from ..block import statistics_tables
-from ..block.view import Results
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
 from ..document.drawing import Drawing
 from ..document.front import Verdict
 from ..document.numbering import ReportDocument, numbered
+from ..document.table import pairs
 from . import (
     figures as adjustment_figures,
 )
@@ -16,7 +21,7 @@ from . import (
 from . import (
     verdict as adjustment_verdict,
 )
-from .view import CONTROL, DEFORMATION, DRIFTS
+from .view import CONTROL, DEFORMATION, DRIFTS, Results
 
 
 def build(results: Results) -> ReportDocument:
@@ -129,7 +134,11 @@ def _points(results: Results, drawings: dict[str, Drawing]) -> Part:
     tables = filled(
         [
             adjustment_tables.control_points(results),
-            statistics_tables.check_points(results, translation_removed=False),
+            statistics_tables.check_points(
+                msgspec.convert(results["check_points"], list[CheckPointStatistics]),
+                (),
+                translation_removed=False,
+            ),
             adjustment_tables.check_point_list(results),
         ]
     )
@@ -184,11 +193,9 @@ def _limits(results: Results) -> Part:
 def _provenance(results: Results) -> Part:
     versions = [(str(name), str(version)) for name, version in results["versions"].items()]
     tables = [
-        statistics_tables.inputs(results),
-        statistics_tables.pairs(
-            "settings", "Settings of the adjustment.", ("Setting", "Value"), _settings(results)
-        ),
-        statistics_tables.pairs("versions", "Software.", ("Package", "Version"), versions),
+        statistics_tables.inputs(msgspec.convert(results["block"]["inputs"], list[InputFile])),
+        pairs("settings", "Settings of the adjustment.", ("Setting", "Value"), _settings(results)),
+        pairs("versions", "Software.", ("Package", "Version"), versions),
     ]
     return Part("provenance", "Inputs, settings, versions", filled(tables))
 

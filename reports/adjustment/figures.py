@@ -2,18 +2,21 @@
 
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from posstats.arrays import Floats
+from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.survey import ImagePlace
 
 from ..block.plan_figures import difference_plan
-from ..block.view import Results, Row, rows, strips
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..figures import style
 from ..figures.plan_view import PlanView, north_and_scale, polylines, view_of
+from .view import Results, Row, rows
 
 MAX_PLAN_IN = 3.4
 LEAST_RAYS = 5
@@ -27,7 +30,12 @@ def draw(results: Results) -> dict[str, Drawing]:
         drawings = [
             plan(results),
             *image_residuals(results),
-            difference_plan(results, words, centred=False),
+            difference_plan(
+                msgspec.convert(results["images"], tuple[ImagePlace, ...]),
+                msgspec.convert(results["check_point_residuals"], tuple[CheckPointResidual, ...]),
+                words,
+                centred=False,
+            ),
         ]
     return {drawing.name: drawing for drawing in drawings if drawing}
 
@@ -37,7 +45,7 @@ def plan(results: Results) -> Drawing | None:
     images = rows(results, "images")
     if not images:
         return None
-    view = view_of(images)
+    view = view_of(msgspec.convert(images, list[ImagePlace]))
     slope = view.height_m / view.width_m
     height = min(max(slope * (style.WIDTH_IN - 1.2), 1.4), MAX_PLAN_IN - 1.0)
     figure = style.new_figure(height + 1.1, min(max(height / slope + 1.2, 3.9), style.WIDTH_IN))
@@ -46,7 +54,7 @@ def plan(results: Results) -> Drawing | None:
     polylines(axis, view, closed, color=style.LIGHT, lw=0.35, zorder=1)
     lines = [
         [(row["x_m"], row["y_m"]) for row in images if row["strip"] == strip]
-        for strip in strips(results)
+        for strip in dict.fromkeys(row["strip"] for row in images)
     ]
     polylines(axis, view, lines, color=style.GREY, lw=0.7)
     stations = [(row["x_m"], row["y_m"]) for row in images]

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ..block.view import Results, Row, rows, scope_label
+from ..block.view import scope_label
 from ..document import format as fmt
 from ..document.table import (
     Column,
@@ -14,7 +14,7 @@ from ..document.table import (
     prose_column,
     text_column,
 )
-from .view import GROUPS, KINDS, parameter_words, shown_unit
+from .view import GROUPS, KINDS, Results, Row, parameter_words, rows, shown_unit
 
 SHOWN_BLUNDERS = 25
 SHOWN_POINTS = 60

@@ -2,10 +2,20 @@
 
 from collections.abc import Iterator
 
-from ..block.view import Results, Row, first, rows
 from ..document import format as fmt
 from ..document.key_figure import KeyFigure
-from .view import KINDS, SEVERAL, group, parameter_words, predicted_rmse, value_words
+from .view import (
+    KINDS,
+    SEVERAL,
+    Results,
+    Row,
+    first,
+    group,
+    parameter_words,
+    predicted_rmse,
+    rows,
+    value_words,
+)
 
 DOUBTFUL_P = 0.05
 SHOWN = 4

@@ -2,9 +2,12 @@
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
-from ..block.view import Results, Row, rows
 from ..document import format as fmt
+
+Results = Mapping[str, Any]
+Row = Mapping[str, Any]
 
 _AXES = {"x": "X", "y": "Y", "z": "Z"}
 GROUPS = {
@@ -37,6 +40,20 @@ CONTROL = {
     "all": "all ground points",
 }
 DEFORMATION = {"none": "none", "bauer": "after Bauer", "brown": "after Brown"}
+
+
+def rows(results: Results, key: str, **conditions: object) -> list[Row]:
+    """Rows of one list of the results whose values equal the conditions."""
+    return [
+        row
+        for row in results.get(key) or ()
+        if all(row.get(name) == value for name, value in conditions.items())
+    ]
+
+
+def first(results: Results, key: str, **conditions: object) -> Row:
+    """The first row that meets the conditions, or an empty row."""
+    return next(iter(rows(results, key, **conditions)), {})
 
 
 def parameter_words(name: str) -> str:

@@ -5,18 +5,20 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from posstats.contract.files import as_values, from_values
+from posstats.contract.results import Results
 from posstats.contract.versions import versions
 from posstats.errors import PosstatsError
 from posstats.version import __version__
 
-from ..acceptance.data import reassess
+from ..acceptance.data import RESULTS, reassess
 from ..acceptance.page import render_document
 from ..acceptance.writing import read_templates
 from ..archive.file import read_file
 from ..verification.questions import verify
 from ..verification.recomputation import recompute
 from ..verification.signature import read_trust
-from ..verification.steps import Steps
+from ..verification.steps import Steps, Values
 from ..verification.words import Answer
 
 
@@ -43,12 +45,17 @@ def verify_file(
 def steps() -> Steps:
     """The steps of the installed version."""
     return Steps(
-        recompute=recompute,
-        reassess=reassess,
-        render_document=render_document,
+        recompute=lambda folder, pattern: as_values(recompute(folder, _typed(pattern))),
+        reassess=lambda found, files, stated: reassess(_typed(found), files, stated),
+        render_document=lambda stated, found, named: render_document(stated, _typed(found), named),
         numbers={"posstats": __version__, **versions()},
         layout=f"posstats {__version__}, WeasyPrint {version('weasyprint')}",
     )
+
+
+def _typed(values: Values) -> Results:
+    """Embedded results, which a document of another maker may lack or spoil."""
+    return from_values(values, Results, RESULTS)
 
 
 def _trust(path: Path) -> list[bytes]:

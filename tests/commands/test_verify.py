@@ -1,8 +1,8 @@
 """`posstats verify` as a user meets it: lines, exit codes, messages; and recomputing for real."""
 
-import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -23,7 +23,8 @@ from small_scenario import small_block
 
 from posstats.analysis.results import results
 from posstats.analysis.steps import Settings, analyse
-from posstats.contract.files import to_json
+from posstats.contract.files import from_json, to_json
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.archive.file import LARGEST_BYTES
@@ -123,7 +124,7 @@ def test_the_commands_are_light_to_load():
 
 
 @pytest.fixture(scope="module")
-def analysed(tmp_path_factory) -> tuple[Path, dict]:
+def analysed(tmp_path_factory) -> tuple[Path, Results]:
     folder = tmp_path_factory.mktemp("small") / "block"
     write_block(small_block(), folder)
     (folder / "own.toml").write_bytes(
@@ -132,7 +133,7 @@ def analysed(tmp_path_factory) -> tuple[Path, dict]:
     settings = Settings(rules="strict", frame="auto")
     analysis = analyse(read_block(folder), settings)
     found = results(analysis, created="2026-01-02T03:04:05+00:00")
-    return folder, json.loads(to_json(found))
+    return folder, from_json(to_json(found), Results, "results.json")
 
 
 def test_recomputing_a_block_gives_its_results_again(analysed):
@@ -142,8 +143,8 @@ def test_recomputing_a_block_gives_its_results_again(analysed):
 
 def test_rules_of_a_file_are_looked_for_in_the_folder(analysed):
     folder, stated = analysed
-    stated = stated | {"settings": stated["settings"] | {"rules": "/elsewhere/own.toml"}}
-    assert recompute(folder, stated)["verdict"] == stated["verdict"]
-    stated["settings"]["rules"] = "/elsewhere/none.toml"
+    own = replace(stated, settings=replace(stated.settings, rules="/elsewhere/own.toml"))
+    assert recompute(folder, own).verdict == stated.verdict
+    none = replace(stated, settings=replace(stated.settings, rules="/elsewhere/none.toml"))
     with pytest.raises(PosstatsError):
-        recompute(folder, stated)
+        recompute(folder, none)

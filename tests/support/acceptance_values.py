@@ -2,10 +2,14 @@
 
 import copy
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from report_results import area_results
+from report_results import area_results, with_rows
+
+from posstats.contract.files import as_values
+from posstats.contract.results import Results
 
 FULL = 64  # points from which there are a blunder and a point that cannot be intersected
 HOSTILE = "<script>alert(1)</script>"
@@ -21,14 +25,12 @@ STATEMENT = (
 )
 
 
-def results(simulated: bool = True) -> dict[str, Any]:
+def results(simulated: bool = True) -> Results:
     """Results with a bundle adjustment, as the acceptance rests on."""
     made = area_results(per_strip=12)
-    made["block"] |= {"simulated": simulated, "n_check_points": 200, "crs": "EPSG:32648"}
-    made["settings"] |= {"position_m": 0.05, "angle_rad": 1.0e-4, "image_px": 0.3}
-    for row in made["regression"]:
-        row["constant_p_value"] = 0.2
-    return made
+    made = with_rows(made, "regression", lambda row: replace(row, constant_p_value=0.2))
+    block = replace(made.block, simulated=simulated, n_check_points=200, crs="EPSG:32648")
+    return replace(made, block=block)
 
 
 def acceptance(
@@ -77,9 +79,9 @@ def acceptance(
             "flight_date": "2025-10-12", "sensor": "frame camera, 12 µm, f = 120 mm",
             "place": "Area 1", "remarks": "",
         },
-        "block": results(simulated)["block"] | {"n_check_points": n},
+        "block": as_values(results(simulated).block) | {"n_check_points": n},
         "results": {"file": "results.json", "sha256": "b" * 64},
-        "settings": results()["settings"],
+        "settings": as_values(results().settings),
         "requirements": requirements,
         "quality_grade": None,
         "accuracy": accuracy,

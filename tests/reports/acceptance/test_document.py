@@ -4,11 +4,13 @@ import copy
 import re
 import shutil
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import acceptance_values as values
 import pytest
 from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from report_results import with_rows
 
 from posstats.errors import PosstatsError
 from posstats.reports.acceptance import figures as acceptance_figures
@@ -213,7 +215,7 @@ def test_the_chinese_page_is_chinese_throughout(pages):
         assert words in text
     ours = re.sub(r"Edition.*?\n|ASPRS[^\n]*", "", text)
     for word in ("Requirement", "limit", "Table", "Figure", "strip", "Accepted", "check point"):
-        for given in (*RESULTS["warnings"], *CASES["rejected"]["profile"]["notes"]):
+        for given in (*RESULTS.warnings, *CASES["rejected"]["profile"]["notes"]):
             ours = ours.replace(given, "")
         assert word not in ours
     assert '<html lang="zh-CN">' in pages["zh"]
@@ -228,11 +230,12 @@ def test_chinese_is_embedded_bold_too_and_in_english_documents(pages):
 
 
 def test_characters_that_cannot_be_shown_are_named_and_do_not_stop_figures():
-    case, results = copy.deepcopy(CASES["few"]), copy.deepcopy(RESULTS)
+    case, results = copy.deepcopy(CASES["few"]), RESULTS
     case["check_points"][0]["point"] = "क1"
     for key in ("images", "models", "angle_errors", "parallax"):
-        for row in results[key]:
-            row["strip"] = "ꀀ" if row["strip"] == "1" else row["strip"]
+        results = with_rows(
+            results, key, lambda row: replace(row, strip="ꀀ") if row.strip == "1" else row
+        )
     assert {"क", "ꀀ"} >= set(unshown(case, results))
     page = render_document(case, results, {})
     for letter in unshown(case, results):
