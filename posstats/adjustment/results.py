@@ -86,7 +86,7 @@ def adjustment_results(adjustment: Adjustment, *, created: str | None = None) ->
             "points": _points(adjustment),
             "images": [vars(each) for each in image_places(adjustment.block)],
             "image_residuals": list(_cells(adjustment)),
-            "warnings": [*adjustment.block.warnings, *_warnings(adjustment)],
+            "warnings": list(_warnings(adjustment)),
         }
     )
     return values

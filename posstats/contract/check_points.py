@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from posstats.contract.about import about
+from posstats.contract.status import PointStatus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,7 @@ class CheckPointResidual:
     point: Annotated[str, about("id of the point")]
     n_rays: Annotated[int, about("images that show it")]
     status: Annotated[
-        str,
+        PointStatus,
         about(
             '`"ok"`, `"fewer than two rays"`, `"parallel rays"`, `"behind the camera"`,'
             ' `"not converged"`'

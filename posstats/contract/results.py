@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
 from posstats.contract.notice import Notice
+from posstats.contract.status import ModelStatus
 from posstats.contract.survey import BlockSummary, ImagePlace
 
 SCHEMA = "posstats-results/1"
@@ -120,7 +121,7 @@ class ModelParallax:
     bundle_px: Annotated[
         float | None, about("the orientation of `--errors bundle`, all points")
     ] = None
-    status: Annotated[str, about('`"ok"`, or why there is no relative orientation')]
+    status: Annotated[ModelStatus, about('`"ok"`, or why there is no relative orientation')]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -128,8 +128,9 @@ def observability(words: Words, results: Results) -> Table:
     """What the tie points leave open; scopes of which the same is to be said share a row."""
     scopes: dict[tuple[str, int], list[str]] = {}
     for row in rows(results, "observability"):
-        if row["unobservable"]:
-            motions = words.catalogue.joined(words.known("motion", m) for m in row["unobservable"])
+        open_rotations = row.get("rotations") or row["unobservable"]  # words in earlier files
+        if open_rotations:
+            motions = words.joined(words.known("rotation", each) for each in open_rotations)
             scopes.setdefault((motions, len(row["images"])), []).append(_scope(words, row["scope"]))
     columns = (
         prose_column(words.text("column.scope"), map(words.catalogue.joined, scopes.values())),

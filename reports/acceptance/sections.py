@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from posstats.contract.notice import Notice
+
 from ..block.view import Results, rows
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
@@ -141,13 +143,21 @@ def _limits(words: Words, acceptance: Mapping[str, Any], results: Results, unsho
     ]
     told = {
         "notes": acceptance["profile"]["notes"],
-        "warnings": [*acceptance["warnings"], *(results.get("warnings") or ())],
+        "warnings": _warnings(words, results),
     }
     for name, texts in told.items():
         if texts:
             listed = Bullets(tuple(dict.fromkeys(map(str, texts))))
             content += [Paragraph(words.text(f"limits.{name}")), listed]
     return _part(words, "limits", content)
+
+
+def _warnings(words: Words, results: Results) -> list[str]:
+    """The notices of the analysis; of an earlier version's file, its sentences."""
+    said = results.get("notices")
+    if said is None:
+        return list(results.get("warnings") or ())
+    return [words.notice(Notice(code=each["code"], values=each["values"])) for each in said]
 
 
 def _limits_list(words: Words, acceptance: Mapping[str, Any], unshown: str) -> list[str]:

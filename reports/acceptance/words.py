@@ -13,7 +13,7 @@ from .units import Lengths, Row
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip
-DOMAINS = ("document", "acceptance")
+DOMAINS = ("document", "notices", "acceptance")
 NAMED = 3  # requirements named in the verdict
 PRODUCT = ("class_h_m", "class_v_m", "gsd_m", "map_scale", "terrain", "lot_size", "sample_size",
            "survey_sigma_h_m", "survey_sigma_v_m")  # fmt: skip

@@ -20,6 +20,7 @@ from ..acceptance.writing import read_templates, write_document
 from ..archive.reading import MALFORMED
 from ..archive.writing import Attachment
 from ..block.summary import WIDTH
+from ..block.wording import with_words
 from ..output.progress import Advance, progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
@@ -137,7 +138,7 @@ def _results(
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
-    values = as_values(results(analysis, created=now()))
+    values = as_values(with_words(results(analysis, created=now())))
     text = to_json(values).encode("utf-8")
     return values, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
 

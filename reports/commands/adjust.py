@@ -17,6 +17,7 @@ from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
 from ..block.report import write_pages
 from ..block.summary import WIDTH
+from ..block.wording import warnings
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
@@ -54,6 +55,7 @@ def adjust_folder(
             block, settings, progress=lambda step, done: progress(step, 0.8 * done)
         )
         values = adjustment_results(adjustment, created=now())
+        values["warnings"] = [*warnings(block.notices), *values["warnings"]]
         values["settings"]["calibration"] = None if calibration is None else calibration.name
         (stage / "adjustment.json").write_text(to_json(values), encoding="utf-8")
         write_adjustment(adjustment, stage)

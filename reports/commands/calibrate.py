@@ -14,6 +14,7 @@ from posstats.formats.block_folder import read_block
 
 from ..adjustment import verdict as adjustment_verdict
 from ..block.summary import WIDTH
+from ..block.wording import warnings
 from ..document import format as fmt
 from ..output.progress import progress_bar
 
@@ -38,7 +39,7 @@ def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> I
     yield f"sigma0: {fmt.number(results['sigma0'])} ({fmt.p_phrase(results['chi2_p'])})"
     yield ""
     yield from textwrap.wrap(adjustment_verdict.blunders(results), WIDTH)
-    for warning in results["warnings"]:
+    for warning in (*warnings(adjustment.block.notices), *results["warnings"]):
         yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
     yield ""
     yield f"calibration: {out}"

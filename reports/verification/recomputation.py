@@ -11,6 +11,8 @@ from posstats.contract.files import to_json
 from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
 
+from ..block.wording import with_words
+
 
 def recompute(folder: Path, pattern: dict[str, Any]) -> dict[str, Any]:
     """Analyse a block folder as `pattern`, its earlier results, says it was analysed.
@@ -26,7 +28,8 @@ def recompute(folder: Path, pattern: dict[str, Any]) -> dict[str, Any]:
     for name in _calibrations(pattern):
         block = calibrated(block, folder / name)
     analysis = analyse(block, _settings(folder, pattern["settings"]))
-    values: dict[str, Any] = json.loads(to_json(results(analysis, created=pattern["created"])))
+    found = with_words(results(analysis, created=pattern["created"]))
+    values: dict[str, Any] = json.loads(to_json(found))
     return values
 
 

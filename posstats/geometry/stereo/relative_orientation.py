@@ -242,7 +242,7 @@ def _usable(models: StereoModels) -> Ids:
         "degenerate: base without horizontal extent"
     )
     status[length <= _MIN_BASE_M] = "degenerate: zero base"
-    status[models.pairs.n_points < MIN_MODEL_POINTS] = f"fewer than {MIN_MODEL_POINTS} points"
+    status[models.pairs.n_points < MIN_MODEL_POINTS] = "fewer than 6 points"
     status[~known[images].all(axis=(1, 2))] = "no orientation"
     return status
 
@@ -313,7 +313,7 @@ def _result(
     pair_of_point = models.pairs.pair_of_point
     n_kept = np.bincount(pair_of_point[weights > 0.0], minlength=len(models))
     status[np.equal(status, "ok").astype(bool) & (n_kept < MIN_MODEL_POINTS)] = (
-        f"fewer than {MIN_MODEL_POINTS} points after rejection"
+        "fewer than 6 points after rejection"
     )
     angles = state[:, :6].reshape(-1, 2, 3)
     turn = rotation_from_angles(angles, models.orientations.system)
