@@ -20,6 +20,7 @@ paper: $(READY)  ## Repeat the source paper's experiment and write its report
 .PHONY: test
 test: $(READY) lint types  ## Run all checks and tests
 	@.ci/debian-packages --pango
+	@.ci/debian-packages --browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -q -n 2 --dist loadgroup
 
 .PHONY: lint
@@ -45,6 +46,10 @@ coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth (many mi
 .PHONY: seeds
 seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
 	$(BIN)/python benchmarks/paper_seeds.py
+
+.PHONY: docs
+docs: $(READY)  ## Make the tables of keys in docs/ anew from the contract
+	$(BIN)/python docs/keys.py
 
 .PHONY: clean
 clean:  ## Remove the environment and all output

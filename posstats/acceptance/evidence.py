@@ -6,18 +6,19 @@ judge a product would flatter it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from posstats.acceptance.product import Product
 from posstats.arrays import Floats
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation
 
 Results = Mapping[str, Any]
 Row = Mapping[str, Any]
 
-ORIENTATIONS = ("bundle", "adjusted", "selected", "pos")
+ORIENTATIONS: tuple[JudgedOrientation, ...] = get_args(JudgedOrientation)
 """What can be assessed; without a choice the first that the results hold. The order is that of
 what entered the orientation, never that of the outcome at the check points."""
 

@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
-from typing import Literal
 
-Terrain = Literal["flat", "mountain"]
+from posstats.settings import TerrainKind
 
 FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
     {
@@ -47,7 +46,7 @@ class Product:
     class_v_m: float | None = None
     gsd_m: float | None = None
     map_scale: float | None = None
-    terrain: Terrain | None = None
+    terrain: TerrainKind | None = None
     lot_size: int | None = None
     sample_size: int | None = None
     survey_sigma_h_m: float | None = None

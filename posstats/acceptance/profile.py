@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
-from posstats.acceptance.product import Product, Terrain
+from posstats.acceptance.product import Product
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
+from posstats.settings import TerrainKind
 
 Exceeding = Literal["fail", "investigate"]
 Component = Literal["horizontal", "vertical"]
@@ -61,7 +62,7 @@ class Requirement:
     mandatory: bool = True
     exceeding: Exceeding = "fail"
     threshold: Formula | None = None
-    terrain: Terrain | None = None
+    terrain: TerrainKind | None = None
     when_given: str | None = None
     basis_of_score: bool = False
 

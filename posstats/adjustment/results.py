@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from posstats.adjustment.additional_parameters import INTERIOR
 from posstats.adjustment.check_points import camera_values
-from posstats.adjustment.settings import INTERIOR
 from posstats.adjustment.significance import HIGH_CORRELATION
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.steps import Adjustment

@@ -18,7 +18,7 @@ from posstats.adjustment.significance import critical_value, local_tests
 from posstats.arrays import Floats, Ints
 from posstats.errors import ConvergenceError, UndeterminedError
 from posstats.numerics.bundle import adjust
-from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 Kind = Literal["image", "axes", "gnss", "imu", "control"]
 BLOCK_ALPHA = 0.05
@@ -183,13 +183,11 @@ def _without(problem: BundleProblem, out: list[_Suspect]) -> BundleProblem:
     antenna, angles = problem.pos.sigma_antenna_m.copy(), problem.pos.sigma_angles_rad.copy()
     antenna[index["gnss"]] = np.inf
     angles[index["imu"]] = np.inf
-    control = problem.control
-    rows = _control_kept(problem, index["control"])
     return replace(
         problem,
         sigma_px=sigma_px,
         pos=replace(problem.pos, sigma_antenna_m=antenna, sigma_angles_rad=angles),
-        control=Control(control.point[rows], control.position_m[rows], control.covariance_m2[rows]),
+        control=problem.control.subset(_control_kept(problem, index["control"])),
     )
 
 

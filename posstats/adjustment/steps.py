@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
+from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
-from posstats.adjustment.control import ControlChoice, chosen_control
+from posstats.adjustment.control import chosen_control
 from posstats.adjustment.diagnosis import GROSS, likely_mistake
 from posstats.adjustment.observability import Undetermined, singular_message, undetermined
 from posstats.adjustment.priors import with_fitting_priors
@@ -26,14 +27,11 @@ from posstats.adjustment.screening import (
     without_rays,
 )
 from posstats.adjustment.selection import Dropped, select_parameters
-from posstats.adjustment.settings import AdjustmentSettings, additional_parameters
 from posstats.adjustment.significance import (
     Correlations,
-    GlobalTest,
     LocalTest,
     ParameterTest,
     correlations,
-    global_test,
     local_tests,
     parameter_tests,
     scale,
@@ -51,6 +49,8 @@ from posstats.geometry.ground.check_points import (
 )
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.settings import AdjustmentSettings, ControlChoice
+from posstats.statistics.global_test import GlobalTest, global_test
 
 Progress = Callable[[str, float], object]
 
@@ -130,7 +130,7 @@ class Adjustment:
         if surveyed is None:
             return None
         used = {self.block.tie_points.point_id[k] for k in self.problem.control.point}
-        return _some(surveyed, np.array([point in used for point in surveyed.point], dtype=bool))
+        return surveyed.subset(np.array([point in used for point in surveyed.point], dtype=bool))
 
 
 def adjust_block(
@@ -215,16 +215,6 @@ def _takes_part(block: Block) -> Bools:
     return ~block.check_points[block.tie_points.point]
 
 
-def _some(surveyed: GroundPoints, keep: Bools) -> GroundPoints:
-    return GroundPoints(
-        surveyed.point[keep],
-        surveyed.position_m[keep],
-        surveyed.is_check[keep],
-        surveyed.sigma_xy_m[keep],
-        surveyed.sigma_z_m[keep],
-    )
-
-
 def _of_wrong_axes(stated: BundleProblem) -> Bools:
     """(m,) rays of images with wrong axes, with which nothing converges; snooping names these."""
     wrong: Bools = np.isin(stated.image, images_with_wrong_axes(stated))
@@ -292,7 +282,7 @@ def _result(
         rejected=rejected,
         problem=problem,
         adjusted=adjusted,
-        overall=global_test(adjusted),
+        overall=global_test(adjusted.square_sum, adjusted.dof),
         parameters=tests,
         common_correlations=_correlations(adjusted),
         single=local_tests(problem, adjusted),

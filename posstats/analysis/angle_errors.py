@@ -9,7 +9,6 @@ Errors live in the ground frame (omega, phi, kappa of the block's system) or in 
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_str
 from posstats.block.model import Block, Orientations
 from posstats.contract.notice import Notice, listing
 from posstats.errors import GeometryError
-from posstats.geometry.coplanarity.adjustment import Priors, adjust
+from posstats.geometry.coplanarity.adjustment import Priors, adjust_coplanarity
 from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.numerics.kernels.rotation import (
     rotation_derivatives,
@@ -35,8 +34,7 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
-
-ErrorSource = Literal["coplanarity", "bundle", "adjusted"]
+from posstats.settings import AngleErrorSource, Frame
 
 _SHOWN = 10
 _SMALL_ANGLE_RAD = 1e-3
@@ -71,8 +69,8 @@ class AngleErrors:
         What a reader has to know of them.
     """
 
-    frame: Literal["ground", "camera"]
-    source: ErrorSource
+    frame: Frame
+    source: AngleErrorSource
     image: Ids
     strip: Ids
     time_s: Floats
@@ -167,7 +165,7 @@ def coplanarity_errors(
         system=pos.system,
         image_px=block.accuracy.image_px,
     )
-    adjusted = adjust(pairs, priors, robust=robust, progress=progress)
+    adjusted = adjust_coplanarity(pairs, priors, robust=robust, progress=progress)
     estimate = _Estimate(
         adjusted.angles_rad,
         adjusted.covariance_rad2,
@@ -210,7 +208,7 @@ class _Estimate:
     sigma_px: float
 
 
-def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> AngleErrors:
+def _errors(pos: Orientations, source: AngleErrorSource, estimate: _Estimate) -> AngleErrors:
     n = len(pos)
     tied = estimate.n_points > 0
     error = wrapped(pos.angles_rad - estimate.angles_rad)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, TypeVar, get_args
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from posstats.arrays import Bools, Floats, Ids
 from posstats.block.model import BLOCK_SCOPE
 from posstats.contract.notice import Notice
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
+from posstats.settings import FitKind
 from posstats.statistics.drift import (
     ConstantFit,
     DriftFit,
@@ -26,7 +27,6 @@ __all__ = [
     "BLOCK_SCOPE", "AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress",
 ]  # fmt: skip
 
-FitKind = Literal["ols", "gls"]
 _Fit = TypeVar("_Fit")
 
 

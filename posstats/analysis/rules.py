@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 
@@ -14,13 +14,12 @@ from posstats.analysis.regression import (
     AngleRegression,
     ConstantFit,
     DriftFit,
-    FitKind,
 )
 from posstats.contract.notice import Notice, Value
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.toml_section import nearest
-
-Form = Literal["none", "constant", "linear"]
+from posstats.settings import FitKind, Form, Scope
+from posstats.statistics.holm import holm
 
 
 class RuleFormatError(BlockFormatError):
@@ -127,7 +126,7 @@ def decide(
     regressions: Sequence[AngleRegression],
     rules: RuleSet,
     *,
-    scope: Literal["block", "strip"] = "block",
+    scope: Scope = "block",
     out_of_sample: OutOfSampleTest | None = None,
 ) -> tuple[Decision, ...]:
     """Decide for every angle of the block, or of every strip.
@@ -177,27 +176,14 @@ def chosen_fits(
 def _proposals(regressions: Sequence[AngleRegression], rules: RuleSet) -> list[Decision]:
     """Decisions by the tests alone, for the angles of one scope."""
     fits = [chosen_fits(regression, rules.fit) for regression in regressions]
-    line_p = _adjusted([None if line is None else line.f_pvalue for line, _ in fits], rules.holm)
-    mean_p = _adjusted([None if mean is None else mean.p_value for _, mean in fits], rules.holm)
+    line_p = [None if line is None else line.f_pvalue for line, _ in fits]
+    mean_p = [None if mean is None else mean.p_value for _, mean in fits]
+    if rules.holm:
+        line_p, mean_p = holm(line_p), holm(mean_p)
     return [
         _proposal(regression, rules, line, mean)
         for regression, line, mean in zip(regressions, line_p, mean_p, strict=True)
     ]
-
-
-def _adjusted(p_values: Sequence[float | None], holm: bool) -> list[float | None]:
-    """Holm's adjustment; None (no test) stays None and does not count.
-
-    statsmodels' `multipletests` gives the same, but collects garbage at every call (0.5 s).
-    """
-    adjusted = list(p_values)
-    if holm:
-        tested = sorted((p, k) for k, p in enumerate(p_values) if p is not None)
-        largest = 0.0
-        for rank, (p, k) in enumerate(tested):
-            largest = max(largest, min(1.0, (len(tested) - rank) * p))
-            adjusted[k] = largest
-    return adjusted
 
 
 def _proposal(

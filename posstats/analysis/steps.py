@@ -2,15 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal, get_args
 
 import numpy as np
 
 from posstats.adjustment.imu_free import ImuFreeBundle, adjust_imu_free
 from posstats.analysis.angle_errors import (
     AngleErrors,
-    ErrorSource,
     adjusted_errors,
     bundle_errors,
     coplanarity_errors,
@@ -30,46 +27,12 @@ from posstats.geometry.ground.check_points import CheckPointResiduals, check_poi
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
+from posstats.settings import Scope, Settings
 
-Scope = Literal["block", "strip"]
-FrameChoice = Literal["ground", "camera", "auto"]
 Progress = Callable[[str, float], object]
 
 FIXED: tuple[Method, ...] = ("angles", "omega", "phi", "kappa")
 """Right-image angles that the fixed-element method holds at their POS values (Figure 1)."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What a user chooses; each value as on the command line.
-
-    Attributes
-    ----------
-    rules
-        ``paper``, ``strict`` or the path of a TOML file.
-    scope
-        Correct by one function of time for the block, or by one for every strip.
-    errors
-        Where angle errors come from: coplanarity of the tie points' rays, a bundle adjustment with
-        control points, or the block's adjusted orientation.
-    frame
-        Frame of the regression; ``auto`` takes the one with less parallax out of sample.
-    robust
-        Resist blunders in the tie points.
-    """
-
-    rules: str | Path = "paper"
-    scope: Scope = "block"
-    errors: ErrorSource = "coplanarity"
-    frame: FrameChoice = "ground"
-    robust: bool = True
-
-    def __post_init__(self) -> None:
-        for name, allowed in (("scope", Scope), ("errors", ErrorSource), ("frame", FrameChoice)):
-            value = getattr(self, name)
-            if value not in get_args(allowed):
-                choices = ", ".join(get_args(allowed))
-                raise PosstatsError(f"setting {name} is {value!r}: choose one of {choices}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +129,13 @@ def analyse(
     ------
     PosstatsError
         If there is no stereo model, the rules cannot be read, or the adjustment fails.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> analysis = posstats.analyse(posstats.read_block("block"))
+    >>> [(each.angle, each.form) for each in analysis.chosen.decisions]
+    [('omega', 'linear'), ('phi', 'none'), ('kappa', 'none')]
     """
     settings = settings or Settings()
     report = progress or _no_progress

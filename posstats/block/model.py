@@ -115,8 +115,18 @@ class GroundPoints:
     sigma_xy_m: Floats
     sigma_z_m: Floats
 
+    @classmethod
+    def none(cls) -> Self:
+        """No points at all."""
+        empty = np.empty(0)
+        return cls(empty.astype(object), np.empty((0, 3)), empty.astype(bool), empty, empty)
+
     def __len__(self) -> int:
         return len(self.point)
+
+    def subset(self, which: Bools | Ints) -> Self:
+        """The points where `which` (g,) is true, or of these numbers."""
+        return replace(self, **{name: values[which] for name, values in vars(self).items()})
 
 
 @dataclass(frozen=True)

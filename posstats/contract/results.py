@@ -12,13 +12,12 @@ from posstats.contract.check_points import CheckPointResidual, CheckPointStatist
 from posstats.contract.notice import Notice
 from posstats.contract.status import ModelStatus
 from posstats.contract.survey import BlockSummary, ImagePlace
+from posstats.settings import AngleErrorSource, FitKind, Form, Frame, FrameChoice, Scope
 
 SCHEMA = "posstats-results/1"
 
 Method = Literal["pos", "independent", "dependent"]
 Fixed = Literal["none", "angles", "omega", "phi", "kappa"]
-Frame = Literal["ground", "camera"]
-Form = Literal["none", "constant", "linear"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,14 +25,10 @@ class AnalysisSettings:
     """What was asked for, and the stated accuracies."""
 
     rules: Annotated[str, about("`paper`, `strict`, or the rule set's file")]
-    scope: Annotated[
-        Literal["block", "strip"], about("one correction for the block, or for each strip")
-    ]
-    errors: Annotated[
-        Literal["coplanarity", "bundle", "adjusted"], about("where angle errors come from")
-    ]
+    scope: Annotated[Scope, about("one correction for the block, or for each strip")]
+    errors: Annotated[AngleErrorSource, about("where angle errors come from")]
     frame: Annotated[Frame, about("frame of the corrections")]
-    frame_setting: Annotated[Literal["ground", "camera", "auto"], about("frame as asked for")]
+    frame_setting: Annotated[FrameChoice, about("frame as asked for")]
     frame_reason: Annotated[str | None, about("why that frame, if it was chosen automatically")] = (
         None
     )
@@ -271,7 +266,7 @@ class Selection:
     correct: Annotated[bool, about("whether it is corrected")]
     form: Annotated[Form, about("of the function taken off")]
     rule: Annotated[str, about("name of the rule set")]
-    fit: Annotated[Literal["ols", "gls"], about("the fit that is taken off")]
+    fit: Annotated[FitKind, about("the fit that is taken off")]
     reason: Annotated[str, about("why")] = ""
     notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()
 

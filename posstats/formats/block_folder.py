@@ -27,7 +27,7 @@ from posstats.formats.orientation_files import (
     source_table,
 )
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
-from posstats.formats.text_table import Table, read_bytes, read_table, sha256
+from posstats.formats.text_table import FileTable, read_bytes, read_table, sha256
 from posstats.formats.toml_section import FILE
 
 __all__ = ["read_block", "write_block", "write_orientations"]
@@ -50,6 +50,13 @@ def read_block(path: str | PathLike[str]) -> Block:
     BlockFormatError
         With a finding for everything that is wrong: file, line, column, what was found and what
         was expected.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> block = posstats.read_block("block")
+    >>> len(block.orientations), block.orientations.strips
+    (32, ('1', '2', '3', '4'))
     """
     folder = Path(path)
     if not folder.is_dir():
@@ -84,7 +91,7 @@ def _settings(folder: Path, inputs: dict[str, str], findings: list[str]) -> Bloc
     return settings
 
 
-def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[str, Table]:
+def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[str, FileTable]:
     """The tables that are there; a missing required one is a finding."""
     tables = {}
     for stem in TABLES:
@@ -99,7 +106,7 @@ def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[s
 
 
 def _block(
-    folder: Path, settings: BlockSettings, tables: dict[str, Table], findings: list[str]
+    folder: Path, settings: BlockSettings, tables: dict[str, FileTable], findings: list[str]
 ) -> Block | None:
     rows = ties = None
     if "orientations" in tables:

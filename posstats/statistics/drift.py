@@ -156,6 +156,16 @@ def fit_drift(
         (a PosstatsError and a ValueError) for fewer than three exposures, equal times, values
         that are not finite, arrays that do not fit, a covariance that is not symmetric and
         positive semidefinite.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> fit = posstats.fit_drift([0.0, 10.0, 20.0, 30.0], [1.0e-5, 1.6e-5, 2.3e-5, 2.8e-5])
+    >>> print(f"{fit.slope:.2e} +- {fit.slope_se:.2e} rad/s, R2 {fit.rsquared:.4f}")
+    6.10e-07 +- 2.65e-08 rad/s, R2 0.9963
+    >>> low, high = fit.conf_int()
+    >>> print(f"95 % interval {low:.2e} to {high:.2e} rad/s, p {fit.f_pvalue:.4f}")
+    95 % interval 4.96e-07 to 7.24e-07 rad/s, p 0.0019
     """
     time, error = _paired(time_s, error_rad, MIN_LINE_POINTS)
     reference = int(np.argmin(np.abs(time - time[0] - np.mean(time - time[0]))))

@@ -132,8 +132,9 @@ def _results(
         return values, text, {}
     # an analysis takes a second to import, and results.json needs none
     from posstats.analysis.results import results
-    from posstats.analysis.steps import Settings, analyse
+    from posstats.analysis.steps import analyse
     from posstats.formats.block_folder import read_block
+    from posstats.settings import Settings
 
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")

@@ -2,13 +2,15 @@
 
 import sys
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, get_args
 
 import click
 
 from posstats.errors import PosstatsError
+from posstats.settings import JudgedOrientation, Language, TerrainKind
 
-from .command_line import FOLDER, clear_errors, default_out
+from ..output import timestamp
+from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
 
 
 class _Length(click.ParamType[float]):
@@ -50,16 +52,16 @@ LENGTH = _Length()
 @click.option("--class-v", type=LENGTH, metavar="LENGTH", help="Vertical accuracy class.")
 @click.option("--gsd", type=LENGTH, metavar="LENGTH", help="Ground sampling distance.")
 @click.option("--scale", type=click.FloatRange(1), metavar="N", help="Map scale 1:N, such as 5000.")
-@click.option("--terrain", type=click.Choice(["flat", "mountain"]), help="Kind of terrain.")
+@click.option("--terrain", type=choice(TerrainKind), help="Kind of terrain.")
 @click.option(
     "--orientation",
-    type=click.Choice(["pos", "selected", "adjusted", "bundle"]),
-    help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
-    "results hold]",
+    type=choice(JudgedOrientation),
+    help=f"Orientation to judge.  [default: the first of {', '.join(get_args(JudgedOrientation))} "
+    "that the results hold]",
 )
 @click.option(
     "--language",
-    type=click.Choice(["en", "zh"]),
+    type=choice(Language),
     default="en",
     show_default=True,
     help="Of the document.",
@@ -70,8 +72,8 @@ LENGTH = _Length()
     metavar="DIR",
     help="Folder with a logo, a letterhead or other templates of yours.",
 )
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
-@click.option("--no-pdf", is_flag=True, help="Write the document as HTML only.")
+@out_option
+@no_pdf_option("document")
 @click.pass_context
 @clear_errors
 def accept(
@@ -84,9 +86,9 @@ def accept(
     class_v: float | None,
     gsd: float | None,
     scale: float | None,
-    terrain: Literal["flat", "mountain"] | None,
-    orientation: str | None,
-    language: str,
+    terrain: TerrainKind | None,
+    orientation: JudgedOrientation | None,
+    language: Language,
     templates: Path | None,
     out: Path | None,
     no_pdf: bool,
@@ -173,7 +175,7 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     """
     from .sign import sign_file
 
-    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
+    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock()):
         click.echo(line)
 
 
@@ -205,7 +207,7 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
     from ..verification.questions import holds
     from .verify import verify_file
 
-    answers = verify_file(file, inputs, trust, templates)
+    answers = verify_file(file, inputs, trust, templates, now=timestamp.clock())
     for each in answers:
         click.echo(each.line)
     if not holds(answers):

@@ -3,15 +3,16 @@
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
-from posstats.adjustment import AdjustmentSettings, ControlChoice, adjust_block
+from posstats.adjustment import adjust_block
 from posstats.adjustment.calibration import calibrated
-from posstats.adjustment.control import NAMED_CHOICES, read_ids
+from posstats.adjustment.control import read_ids
 from posstats.adjustment.results import adjustment_results, write_adjustment
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
+from posstats.settings import AdjustmentSettings, ControlChoice, ControlSubset, NamedControl
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
@@ -21,6 +22,7 @@ from ..block.wording import warnings
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
+from .command_line import written
 
 
 def control_choice(text: str | None) -> ControlChoice:
@@ -33,13 +35,12 @@ def control_choice(text: str | None) -> ControlChoice:
     """
     if text is None:
         return "roles"
-    if text in NAMED_CHOICES:
-        return cast(ControlChoice, text)
+    if text in get_args(NamedControl):
+        return cast(NamedControl, text)
     path = Path(text)
     if not path.is_file():
-        raise PosstatsError(
-            f"--control {text}: found neither a choice (none, centre, corners, all) nor a file"
-        )
+        choices = ", ".join(get_args(ControlSubset))
+        raise PosstatsError(f"--control {text}: found neither a choice ({choices}) nor a file")
     return read_ids(path)
 
 
@@ -62,12 +63,7 @@ def adjust_folder(
         progress("writing the report", 0.85)
         missing = write_pages(adjustment_document.build(values), stage / "adjustment", pdf=pdf)
     yield from _summary(values)
-    yield ""
-    if missing:
-        yield missing
-    yield f"report: {out / 'adjustment.html'}" + (
-        f", {out / 'adjustment.pdf'}" if pdf and not missing else ""
-    )
+    yield from written(out, "adjustment", missing, pdf=pdf)
 
 
 def _summary(values: dict[str, Any]) -> Iterator[str]:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from posstats.adjustment import AdjustmentSettings, adjust_block
+from posstats.adjustment import adjust_block
 from posstats.adjustment.calibration import Calibration, calibrate, write_calibration
 from posstats.adjustment.results import adjustment_results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
+from posstats.settings import AdjustmentSettings
 
 from ..adjustment import verdict as adjustment_verdict
 from ..block.summary import WIDTH

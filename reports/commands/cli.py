@@ -5,14 +5,35 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
-from typing import Literal
 
 import click
 
+from posstats.settings import (
+    AdjustmentSettings,
+    AngleErrorSource,
+    ControlSubset,
+    DriftScope,
+    FrameChoice,
+    RuleSetName,
+    Scope,
+    SelfCalibration,
+    Settings,
+)
 from posstats.version import __version__
 
 from . import acceptance_group as acceptance_cli
-from .command_line import FOLDER, clear_errors, default_out
+from .command_line import (
+    FOLDER,
+    block_argument,
+    calibration_option,
+    choice,
+    clear_errors,
+    default_out,
+    named,
+    no_pdf_option,
+    out_option,
+    seed_option,
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -29,53 +50,53 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--rules",
-    default="paper",
+    default=Settings.rules,
     show_default=True,
-    metavar="paper|strict|FILE",
+    metavar=named(RuleSetName),
     help="Which angles to correct: the paper's rule, the strict rule, or a TOML file.",
 )
 @click.option(
     "--scope",
-    type=click.Choice(["block", "strip"]),
-    default="block",
+    type=choice(Scope),
+    default=Settings.scope,
     show_default=True,
     help="One regression line for the block, or one per strip.",
 )
 @click.option(
     "--errors",
-    type=click.Choice(["coplanarity", "bundle", "adjusted"]),
-    default="coplanarity",
+    type=choice(AngleErrorSource),
+    default=Settings.errors,
     show_default=True,
     help="Angle errors from the tie points, from a bundle adjustment with control points, or "
     "against adjusted.csv.",
 )
 @click.option(
     "--frame",
-    type=click.Choice(["ground", "camera", "auto"]),
-    default="ground",
+    type=choice(FrameChoice),
+    default=Settings.frame,
     show_default=True,
     help="Frame of the regression; auto takes the one that fits better out of sample.",
 )
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=Settings.robust,
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@calibration_option
+@no_pdf_option("report")
 @clear_errors
 def analyse(
     block: Path,
     out: Path | None,
     rules: str,
-    scope: Literal["block", "strip"],
-    errors: Literal["coplanarity", "bundle", "adjusted"],
-    frame: Literal["ground", "camera", "auto"],
+    scope: Scope,
+    errors: AngleErrorSource,
+    frame: FrameChoice,
     robust: bool,
     calibration: Path | None,
     no_pdf: bool,
@@ -89,8 +110,6 @@ def analyse(
     Example:
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
-    from posstats.analysis.steps import Settings
-
     from .analyse import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
@@ -100,25 +119,25 @@ def analyse(
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points chosen among all ground points, or a file of ids, one on a line; the "
     "others are check points.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["none", "block", "strip"]),
-    default="block",
+    type=choice(DriftScope),
+    default=AdjustmentSettings.drift,
     show_default=True,
     help="Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or strips.",
 )
 @click.option(
     "--self-calibration",
-    type=click.Choice(["none", "bauer", "brown"]),
-    default="none",
+    type=choice(SelfCalibration),
+    default=AdjustmentSettings.self_calibration,
     show_default=True,
     help="Image deformation.",
 )
@@ -132,21 +151,21 @@ def analyse(
 @click.option(
     "--drop-insignificant", is_flag=True, help="Drop free parameters that are not significant."
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
+@calibration_option
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=AdjustmentSettings.robust,
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@no_pdf_option("report")
 @clear_errors
 def adjust(
     block: Path,
     out: Path | None,
     control: str | None,
-    drift: Literal["none", "block", "strip"],
-    self_calibration: Literal["none", "bauer", "brown"],
+    drift: DriftScope,
+    self_calibration: SelfCalibration,
     camera: bool,
     lever_arm: bool,
     estimate_weights: bool,
@@ -165,8 +184,6 @@ def adjust(
     Example:
       posstats adjust flight7 --control corners --drift strip --out flight7/adjusted
     """
-    from posstats.adjustment import AdjustmentSettings
-
     from .adjust import adjust_folder, control_choice
 
     settings = AdjustmentSettings(
@@ -185,16 +202,16 @@ def adjust(
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @click.option("--out", type=FOLDER, required=True, metavar="FILE", help="TOML file to write.")
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points, as of adjust.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["block", "strip"]),
+    type=choice(Scope),
     default="strip",
     show_default=True,
     help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
@@ -205,7 +222,7 @@ def calibrate(
     block: Path,
     out: Path,
     control: str | None,
-    drift: Literal["block", "strip"],
+    drift: Scope,
     lever_arm: bool,
 ) -> None:
     """Estimate the boresight of the POS from the calibration flight BLOCK.
@@ -218,8 +235,6 @@ def calibrate(
       posstats calibrate field --out boresight.toml
       posstats analyse flight7 --calibration boresight.toml
     """
-    from posstats.adjustment import AdjustmentSettings
-
     from .adjust import control_choice
     from .calibrate import calibrate_folder
 
@@ -230,10 +245,8 @@ def calibrate(
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
@@ -254,10 +267,8 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the second source paper: POS errors removed in the bundle adjustment.
@@ -313,7 +324,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @clear_errors
 def check(block: Path) -> None:
     """Validate the block folder BLOCK and print a summary.

@@ -21,9 +21,14 @@ from ..verification.words import Answer
 
 
 def verify_file(
-    path: Path, inputs: Path | None, trust_file: Path | None, templates: Path | None = None
+    path: Path,
+    inputs: Path | None,
+    trust_file: Path | None,
+    templates: Path | None = None,
+    *,
+    now: dt.datetime,
 ) -> Sequence[Answer]:
-    """Answer every question on the document `path`.
+    """Answer every question on the document `path`, as of `now`.
 
     Raises
     ------
@@ -35,7 +40,6 @@ def verify_file(
     if inputs is not None and not inputs.is_dir():
         raise PosstatsError(f"{inputs} is no block folder")
     trust = None if trust_file is None else _trust(trust_file)
-    now = dt.datetime.now(dt.UTC)
     known = None if templates is None else read_templates(templates)
     return list(verify(path, steps(), inputs=inputs, trust=trust, templates=known, now=now))
 

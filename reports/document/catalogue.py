@@ -11,12 +11,14 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from typing import get_args
 
 from babel.messages.pofile import read_po
 
 from posstats.errors import PosstatsError
+from posstats.settings import Language
 
-LANGUAGES = ("en", "zh")
+LANGUAGES: tuple[Language, ...] = get_args(Language)
 _PATH = "locale/{language}/LC_MESSAGES/{domain}.po"
 
 

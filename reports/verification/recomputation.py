@@ -6,10 +6,11 @@ from typing import Any
 
 from posstats.adjustment.calibration import calibrated
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.contract.files import to_json
 from posstats.formats.block_folder import read_block
 from posstats.formats.toml_section import FILE
+from posstats.settings import Settings
 
 from ..block.wording import with_words
 

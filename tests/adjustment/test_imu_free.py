@@ -15,7 +15,7 @@ from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 from posstats.adjustment.imu_free import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.analysis.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
 from posstats.contract.files import as_values
@@ -25,6 +25,7 @@ from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_fr
 from posstats.reports.block import document as block_document
 from posstats.reports.commands.cli import cli
 from posstats.reports.pages import html
+from posstats.settings import Settings
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}
 ONE_STRIP = scenario()["flight"] | {"n_strips": 1}

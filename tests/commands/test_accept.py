@@ -8,6 +8,7 @@ import pikepdf
 import pytest
 from archive_conformance import problems
 from click.testing import CliRunner
+from needed import chinese_typeface
 from small_scenario import small_block
 
 from posstats.acceptance.assessment import ChosenStatement
@@ -17,7 +18,6 @@ from posstats.reports.acceptance.units import Lengths, margin
 from posstats.reports.commands.accept import length_m
 from posstats.reports.commands.cli import cli
 from posstats.reports.document.format import METRE, MINUS
-from posstats.reports.typefaces.cjk import faces
 
 CONTRACT = """
 extends = "asprs-2024"
@@ -172,8 +172,8 @@ def test_the_exit_code_is_the_verdict(analysed, tmp_path, options, code, verdict
     assert done.output.startswith(verdict.upper())
 
 
-@pytest.mark.skipif(not faces("检"), reason="no typeface for Chinese is installed")
 def test_a_chinese_document_verifies_too(folder, analysed, tmp_path):
+    chinese_typeface()
     done = run("accept", analysed, "--contract", folder.parent / "contract.toml", "--language",
                "zh", "--out", tmp_path)  # fmt: skip
     assert done.exit_code == 0, done.output

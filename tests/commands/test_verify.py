@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from archive_documents import (
+    NOW,
     STEPS,
     certificate,
     document,
@@ -22,16 +23,18 @@ from helpers import ROOT
 from small_scenario import small_block
 
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.archive.file import LARGEST_BYTES
 from posstats.reports.commands import verify as verify_command
 from posstats.reports.commands.cli import cli
+from posstats.reports.output import timestamp
 from posstats.reports.verification import words
 from posstats.reports.verification.recomputation import recompute
 from posstats.reports.verification.values import TOLERANCE
+from posstats.settings import Settings
 
 COMMAND = Path(sys.executable).with_name("posstats")
 
@@ -43,6 +46,7 @@ def folder(tmp_path, monkeypatch) -> Path:
     monkeypatch.setattr(verify_command, "render_document", render_document)
     monkeypatch.setattr(verify_command, "recompute", STEPS.recompute)
     monkeypatch.setattr(verify_command, "versions", lambda: {"numpy": "2.4"})
+    monkeypatch.setattr(timestamp, "clock", lambda: NOW)
     monkeypatch.chdir(tmp_path)
     write_inputs(tmp_path / "block")
     Path("a.pdf").write_bytes(document(results_of(tmp_path / "block")))
@@ -114,7 +118,7 @@ def test_help_shows_an_example_and_never_a_passphrase(command):
 
 def test_the_commands_are_light_to_load():
     code = (
-        "import sys, posstats.reports.verification.questions, posstats.reports.sign_command;"
+        "import sys, posstats.reports.verification.questions, posstats.reports.commands.sign;"
         "print(*sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

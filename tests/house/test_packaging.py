@@ -53,7 +53,7 @@ def test_the_wheel_holds_every_file_of_the_package(wheel):
 def test_the_installed_wheel_simulates_and_reports_without_its_repository(wheel, tmp_path):
     zipfile.ZipFile(wheel).extractall(tmp_path / "site")
     run = (
-        "import sys, posstats; from posstats.reports.cli import cli; "
+        "import sys, posstats; from posstats.reports.commands.cli import cli; "
         "assert 'site' in posstats.__file__; cli(sys.argv[1:])"
     )
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "site")}

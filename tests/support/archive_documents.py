@@ -26,7 +26,9 @@ from posstats.reports.typefaces import fonts
 from posstats.reports.verification.steps import Steps
 
 CREATED = "2026-01-02T03:04:05+00:00"
-NOW = dt.datetime.now(dt.UTC)
+NOW = dt.datetime(2026, 6, 1, 12, tzinfo=dt.UTC)
+ALWAYS = (-10_000, 40_000)
+"""Days around NOW: a certificate for programs that read the clock of the machine."""
 INPUTS = {"block.toml": b'name = "flight7"\n', "orientations.csv": b"image,x\na,1.0\n"}
 PROFILE = b'name = "house"\nlimit = 0.1\n'
 TEMPLATE = b"<p>Example Survey Ltd</p>"

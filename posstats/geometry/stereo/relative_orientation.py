@@ -141,6 +141,16 @@ def orient(
     ------
     GeometryError
         For an unknown method.
+
+    Examples
+    --------
+    What relative orientation leaves of the parallax of a block with 0.2 px of image noise:
+
+    >>> import posstats
+    >>> models = posstats.stereo_models(posstats.read_block("block"))
+    >>> left = posstats.orient(models, "independent")
+    >>> print(f"{left.y_parallax_rms_px.mean():.2f} px")
+    0.27 px
     """
     if method not in get_args(Method):
         raise GeometryError(
@@ -269,27 +279,27 @@ def _adjusted(
         numbers,
     )
 
-    def adjust(pairs: Ints) -> None:
+    def solve(pairs: Ints) -> None:
         if robust:
             weigh_pairs(*equations, pairs, state)
         adjust_pairs(*equations, pairs, state, rms, code, iterations)
 
-    _in_threads(adjust, np.flatnonzero(usable), models.pairs.n_points)
+    _in_threads(solve, np.flatnonzero(usable), models.pairs.n_points)
     status = start.status.copy()
     status[usable] = [_STATUS[c] for c in code[usable]]
     return _result(models, start, state, rms, status, weights, iterations)
 
 
-def _in_threads(adjust: Callable[[Ints], None], pairs: Ints, n_points: Ints) -> None:
-    """Run `adjust` on shares of the pairs with about the same numbers of points."""
+def _in_threads(solve: Callable[[Ints], None], pairs: Ints, n_points: Ints) -> None:
+    """Run `solve` on shares of the pairs with about the same numbers of points."""
     total = np.cumsum(n_points[pairs])
     n_threads = min(os.cpu_count() or 1, int(total[-1:].sum()) // _POINTS_PER_THREAD)
     if n_threads < 2:
-        adjust(pairs)
+        solve(pairs)
         return
     cuts = np.searchsorted(total, total[-1] * np.arange(1, n_threads) / n_threads)
     with ThreadPoolExecutor(n_threads) as pool:
-        list(pool.map(adjust, np.split(pairs, cuts)))
+        list(pool.map(solve, np.split(pairs, cuts)))
 
 
 def _turned_rad(start: _Start, turn: Floats, system: AngleSystem) -> Floats:

@@ -1,8 +1,8 @@
 """How the report on the second paper calls its situations, methods and control points."""
 
-from posstats.papers.wucaps.adjustments import Control
 from posstats.papers.wucaps.experiment import Method
 from posstats.papers.wucaps.situations import Situation
+from posstats.settings import ControlSubset
 
 from ...document.format import NARROW_SPACE
 
@@ -27,7 +27,7 @@ METHODS: dict[Method, str] = {
     "free": "bundle, drifts free",
     "reference": "bundle, no systematic errors",
 }
-CONTROL: dict[Control, str] = {
+CONTROL: dict[ControlSubset, str] = {
     "none": "none",
     "centre": "one, centre",
     "corners": "four, corners",

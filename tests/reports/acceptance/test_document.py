@@ -2,13 +2,14 @@
 
 import copy
 import re
-import shutil
+import subprocess
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import acceptance_values as values
 import pytest
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from needed import chinese_typeface, program
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.errors import PosstatsError
 from posstats.reports.acceptance import figures as acceptance_figures
@@ -23,31 +24,12 @@ CASES = values.cases()
 RESULTS = values.results()
 
 
-def has_chinese_font() -> bool:
-    cjk.font_file.cache_clear()
-    try:
-        cjk.font_file()
-    except PosstatsError:
-        return False
-    return True
-
-
-needs_chinese = pytest.mark.skipif(
-    not has_chinese_font(), reason="no typeface for Chinese is installed"
-)
-
-
 @pytest.fixture(scope="module")
 def pages() -> dict[str, str]:
-    made = {
-        name: render_document(case, RESULTS, {})
-        for name, case in CASES.items()
-        if name != "chinese names" or has_chinese_font()
-    }
-    if has_chinese_font():
-        chinese = values.chinese_contract(CASES["rejected"])
-        made["zh"] = render_document(chinese, RESULTS, {})
-    return made
+    chinese_typeface()
+    made = {name: render_document(case, RESULTS, {}) for name, case in CASES.items()}
+    chinese = values.chinese_contract(CASES["rejected"])
+    return made | {"zh": render_document(chinese, RESULTS, {})}
 
 
 def words_on(page: str) -> str:
@@ -206,7 +188,6 @@ def test_without_a_chinese_typeface_the_error_names_the_package(monkeypatch, tmp
         cjk.font_file.cache_clear()
 
 
-@needs_chinese
 def test_the_chinese_page_is_chinese_throughout(pages):
     text = words_on(pages["zh"])
     for words in ("验收结论", "不合格", "产品平面中误差", "检查点", "上下视差", "限值", "委托单位"):
@@ -219,7 +200,6 @@ def test_the_chinese_page_is_chinese_throughout(pages):
     assert '<html lang="zh-CN">' in pages["zh"]
 
 
-@needs_chinese
 def test_chinese_is_embedded_bold_too_and_in_english_documents(pages):
     for name in ("zh", "chinese names"):
         faces = re.findall(r'"posstats CJK"; font-weight: (\w+)', pages[name])
@@ -275,18 +255,18 @@ def test_contents_have_page_numbers_and_signatures_stay_together(pdf_files):
     assert "For the client" in signatures[0]
 
 
-@needs_chinese
-@pytest.mark.skipif(not shutil.which("pdffonts"), reason="pdffonts is not installed")
 def test_no_other_typeface_gets_into_the_pdf(pdf_files):
-    import subprocess
-
     for path in pdf_files.values():
-        run = subprocess.run(["pdffonts", path], capture_output=True, text=True, check=True)
+        run = subprocess.run(
+            [program("pdffonts", package="poppler-utils"), path],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         names = {line.split()[0].split("+")[1] for line in run.stdout.splitlines()[2:]}
         assert names <= {"DejaVu-Sans", "DejaVu-Sans-Bold", "posstats-CJK", "posstats-CJK-Bold"}
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_sees_no_error_no_request_and_no_sideways_scrolling(pages, tmp_path, width):
     for name in ("long", "hostile", *({"zh"} & set(pages))):

@@ -6,14 +6,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.block.image_pairs import stereo_models
 from posstats.errors import PosstatsError
@@ -195,7 +194,6 @@ def test_numbers_of_the_page_are_readable(page):
     assert not re.search(r"\d\.\d{6,}", text)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_shows_the_page_without_fault(page, tmp_path, width):
     assert_shown_without_fault(page, width, tmp_path)
@@ -303,15 +301,38 @@ def test_an_outdated_pdf_does_not_stay_beside_a_new_page(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.pdf", "paper.html"]
 
 
+HELD = """
+import os, signal, sys
+from posstats.reports.commands.cli import main
+from posstats.reports.papers.drift import areas
+
+told = int(sys.argv.pop(1))
+
+def wait(*_):
+    os.write(told, b".")
+    signal.pause()
+
+areas._analysed = areas._reported = wait
+main()
+"""
+
+
 def test_an_interrupt_ends_the_workers_and_leaves_nothing(tmp_path):
+    """Two workers and the process that waits for them say so through a pipe, and stay there."""
+    ours, theirs = os.pipe()
     process = subprocess.Popen(
-        [COMMAND, "paper", "--out", tmp_path / "out"], stderr=subprocess.PIPE
+        [sys.executable, "-c", HELD, str(theirs), "paper", "--out", tmp_path / "out"],
+        pass_fds=(theirs,),
+        stderr=subprocess.PIPE,
+        text=True,
     )
-    while not list(tmp_path.glob(".posstats-*")):
-        time.sleep(0.1)
-    time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=20)
+    os.close(theirs)
+    with os.fdopen(ours, "rb") as said:
+        assert said.read(3) == b"..."
+        assert list(tmp_path.glob(".posstats-*"))
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate()
+        assert said.read() == b""  # nobody holds the other end any more
     assert process.returncode == 1
-    assert told.decode().strip() == "Aborted!"
+    assert told.strip() == "Aborted!"
     assert list(tmp_path.iterdir()) == []

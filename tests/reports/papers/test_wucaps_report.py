@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.seeds import repeated
@@ -136,7 +136,6 @@ def test_numbers_of_the_page_are_readable(page):
     assert not re.search(r"(?<!wucaps-)\bmountain\b", text, re.IGNORECASE)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_shows_the_page_without_fault(page, tmp_path, width):
     assert_shown_without_fault(page, width, tmp_path)
