@@ -50,10 +50,7 @@ class CheckPointResidual:
     n_rays: Annotated[int, about("images that show it")]
     status: Annotated[
         PointStatus,
-        about(
-            '`"ok"`, `"fewer than two rays"`, `"parallel rays"`, `"behind the camera"`,'
-            ' `"not converged"`'
-        ),
+        about("whether it was intersected, or why not"),
     ]
     survey_sigma_xy_m: Annotated[
         float | None, about("standard deviation of the surveyed position; `null` if not stated")

@@ -290,7 +290,10 @@ class Observability:
 
     scope: Annotated[str, about('`"block"` or a strip\'s id')]
     unobservable: Annotated[tuple[str, ...], about("rotations left open, in words")] = ()
-    rotations: Annotated[tuple[str, ...], about("the same as codes")] = ()
+    rotations: Annotated[
+        tuple[str, ...],
+        about("the same as codes: `about_base_axis`, `about_axis_across`, `about_vertical`"),
+    ] = ()
     images: Annotated[tuple[str, ...], about("ids of images whose angles are not determined")]
 
 

@@ -1,13 +1,15 @@
 """The words of one document: messages of its catalogue with the document's own values."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 from posstats.contract.notice import Notice
 
 from . import format as fmt
 from .catalogue import Catalogue, name_in
+
+_LISTED = ("ids", "lines")  # values of a notice that stand one after the other
 
 
 @dataclass(frozen=True)
@@ -70,17 +72,18 @@ class Words:
     def _written(self, said: Notice, name: str, plain: bool) -> str:
         value = said.values[name]
         if name == "why":
-            return self.notice(replace(said, code=str(value)), plain=plain)
+            others = {key: each for key, each in said.values.items() if key != "why"}
+            return self.notice(Notice(code=str(value), values=others), plain=plain)
         if isinstance(value, str):
             key = f"{name}.{value}"
             return self.of("value", key) if self.catalogue.holds("value", key) else value
-        if name == "ids" and isinstance(value, tuple | list):
+        if name in _LISTED and isinstance(value, tuple | list):
             return self._first(value, said, plain)
-        return fmt.by_name(name, value, self.text("list.between").join, plain=plain)
+        return fmt.by_name(name, value, self.joined, plain=plain)
 
-    def _first(self, ids: Iterable[object], said: Notice, plain: bool) -> str:
-        """The first few ids of `n`, and how many there are besides."""
-        shown = [str(each) for each in ids]
+    def _first(self, texts: Iterable[object], said: Notice, plain: bool) -> str:
+        """Texts in a row; if they are the first few of ``n``, how many there are besides."""
+        shown = [str(each) for each in texts]
         n = said.values.get("n")
         hidden = n - len(shown) if isinstance(n, int) else 0
         if hidden <= 0:
