@@ -16,7 +16,7 @@ from posstats.block.model import Block
 from posstats.contract.notice import Notice
 from posstats.errors import BlockFormatError, GeometryError
 from posstats.formats.block_notices import block_notices, settings_notices, time_notices
-from posstats.formats.block_toml import BlockSettings, parse_settings
+from posstats.formats.block_toml import FILE, BlockSettings, parse_settings
 from posstats.formats.block_writing import write_block, write_orientations
 from posstats.formats.convention import Convention
 from posstats.formats.orientation_files import (
@@ -28,7 +28,6 @@ from posstats.formats.orientation_files import (
 )
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
 from posstats.formats.text_table import FileTable, read_bytes, read_table, sha256
-from posstats.formats.toml_section import FILE
 
 __all__ = ["read_block", "write_block", "write_orientations"]
 

@@ -4,11 +4,12 @@ import ast
 import re
 import string
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from helpers import ROOT
 
-from posstats.reports.document.catalogue import LANGUAGES, Catalogue, catalogue
+from posstats.reports.document.catalogue import LANGUAGES, catalogue
 
 DOMAINS = tuple(sorted(path.stem for path in (ROOT / "reports/locale/en").rglob("*.po")))
 OF = {
@@ -33,7 +34,12 @@ def places(forms: tuple[str, ...]) -> set[str]:
 def nodes(paths: list[Path]) -> Iterator[ast.AST]:
     """Everything in modules."""
     for path in paths:
-        yield from ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        yield from _nodes(path)
+
+
+@cache
+def _nodes(path: Path) -> list[ast.AST]:
+    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
 
 
 def texts(paths: list[Path]) -> set[str]:
@@ -76,9 +82,12 @@ def _is_result(node: ast.AST, call: ast.Call) -> bool:
     return node in options and isinstance(node, ast.Constant)
 
 
-def everything(language: str) -> Catalogue:
-    """All domains as one catalogue."""
-    return catalogue(language, *DOMAINS)
+def combined() -> set[tuple[str, ...]]:
+    """Domains that reports put into one catalogue."""
+    lists = [n.elts for n in nodes(REPORTS) if isinstance(n, ast.Tuple)]
+    lists += [n.args[1:] for n in nodes(REPORTS) if called(n) == "catalogue"]
+    named = {tuple(getattr(n, "value", None) for n in each) for each in lists if len(each) > 1}
+    return {each for each in named if set(each) <= set(DOMAINS)}
 
 
 def templates() -> str:
