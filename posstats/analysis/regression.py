@@ -141,7 +141,7 @@ def _fits_or_notice(
         try:
             made[kind] = fit(kind)
         except ImpossibleFitError as problem:
-            why_not = problem.notice
+            why_not = Notice(code=problem.code, values=problem.values)
     return made, why_not
 
 

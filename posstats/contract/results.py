@@ -29,9 +29,9 @@ class AnalysisSettings:
     errors: Annotated[AngleErrorSource, about("where angle errors come from")]
     frame: Annotated[Frame, about("frame of the corrections")]
     frame_setting: Annotated[FrameChoice, about("frame as asked for")]
-    frame_reason: Annotated[str | None, about("why that frame, if it was chosen automatically")] = (
-        None
-    )
+    frame_reason: Annotated[
+        str | None, about("why that frame, if chosen automatically, in English")
+    ] = None
     frame_notice: Annotated[Notice | None, about("the same as code and values")] = None
     robust: Annotated[bool, about("whether blunders of tie points were resisted")]
     position_m: Annotated[float, about("stated standard deviation of a position")]
@@ -240,7 +240,7 @@ class Regression:
     covariance_known: Annotated[
         bool, about("false if the errors came without covariance (`--errors adjusted`)")
     ]
-    reason: Annotated[str | None, about("why a fit is impossible, or `null`")] = None
+    reason: Annotated[str | None, about("why a fit is impossible, in English, or `null`")] = None
     notice: Annotated[Notice | None, about("the same as code and values")] = None
 
 
@@ -267,7 +267,7 @@ class Selection:
     form: Annotated[Form, about("of the function taken off")]
     rule: Annotated[str, about("name of the rule set")]
     fit: Annotated[FitKind, about("the fit that is taken off")]
-    reason: Annotated[str, about("why")] = ""
+    reason: Annotated[str, about("why, in English")] = ""
     notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()
 
 
@@ -333,5 +333,5 @@ class Results:
         tuple[CheckPointResidual, ...], about("one per orientation and check point")
     ]
     observability: Annotated[tuple[Observability, ...], about("one per scope")]
-    warnings: Annotated[tuple[str, ...], about("sentences")] = ()
-    notices: Annotated[tuple[Notice, ...], about("the warnings as codes and values")] = ()
+    warnings: Annotated[tuple[str, ...], about("what to beware of, in English")] = ()
+    notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from posstats.arrays import Floats, Ids
-from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.statistics.linear_model import (
     LinearFit,
@@ -35,10 +34,11 @@ class FitError(PosstatsError, ValueError):
 
 
 class ImpossibleFitError(FitError):
-    """A regression that these data do not carry, for the reason in `notice`."""
+    """A regression that these data do not carry, for a reason with a `code` and `values`."""
 
     def __init__(self, message: str, code: str, **values: int) -> None:
-        self.notice = Notice(code=code, values=values)
+        self.code = code
+        self.values = values
         super().__init__(message)
 
 

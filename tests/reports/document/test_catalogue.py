@@ -1,14 +1,15 @@
 """Messages of a catalogue: families of the data, plurals, enumerations, values."""
 
 import re
+from dataclasses import fields
 
 import pytest
 from helpers import ROOT
 
 from posstats.acceptance.evidence import ORIENTATIONS
 from posstats.acceptance.quantity_names import QUANTITIES
+from posstats.contract.acceptance import StatedProduct
 from posstats.errors import PosstatsError
-from posstats.reports.acceptance import words as acceptance_words
 from posstats.reports.document.catalogue import MissingMessageError, catalogue
 from posstats.statistics import samples
 
@@ -34,8 +35,8 @@ def test_every_reason_quantity_and_orientation_has_words():
             assert words.holds("orientation", name)
             assert words.holds("orientation_reason", name)
         assert words.holds("orientation_reason", "asked")
-        for key in acceptance_words.PRODUCT:
-            assert words.holds("product", key)
+        for stated in fields(StatedProduct):
+            assert words.holds("product", stated.name)
 
 
 def test_a_missing_message_is_an_error_and_never_its_id():
