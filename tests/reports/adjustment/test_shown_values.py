@@ -20,6 +20,8 @@ from shown_values import (
 
 from posstats.contract.notice import Notice
 from posstats.reports.adjustment.document import build
+from posstats.reports.adjustment.parameters import SHOWN_CORRELATIONS, correlation_table
+from posstats.reports.adjustment.points import check_table, control_table
 from posstats.reports.adjustment.words import words_in
 from posstats.reports.figures import style
 
@@ -135,6 +137,25 @@ def test_correlations_are_shown_the_strongest_first(tables):
     assert_column(columns[2], [0.987, -0.961])
     assert "S1-0" in columns[1].cells[0]
     assert "S2" in columns[1].cells[1]
+
+
+def test_correlations_beyond_the_first_are_counted(results):
+    pair = results.correlations[0]
+    many = tuple(replace(pair, second_scope=str(k), value=0.95 + 0.001 * k) for k in range(40))
+    table = correlation_table(words_in("en"), many)
+    assert len(table.rows) == SHOWN_CORRELATIONS
+    assert table.rows[0][1].endswith(" 39")
+    assert table.notes == (words_in("en").text("correlations.more", n="15"),)
+
+
+def test_points_that_tables_leave_out_are_counted(results):
+    words = words_in("en")
+    for n, notes in ((60, ()), (75, (words.text("table.more", n="15"),))):
+        control = control_table(words, results.control_points[:1] * n)
+        checks = check_table(words, results.check_point_residuals[:1] * n)
+        for table in (control, checks):
+            assert len(table.rows) == 60
+            assert table.notes == notes
 
 
 def test_orientations_show_sigma_and_pos_minus_adjusted(results, tables):
