@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 TOLERANCE = 1e-6  # relative, between versions of the libraries
 SMALLEST = 1e-12  # differences below it are none, whatever the unit
 
 
-def differences(stated: Any, found: Any, tolerance: float = 0.0, path: str = "") -> Iterator[str]:
+def differences(
+    stated: object, found: object, tolerance: float = 0.0, path: str = ""
+) -> Iterator[str]:
     """Where two values differ, in words.
 
     Parameters
@@ -29,7 +30,7 @@ def differences(stated: Any, found: Any, tolerance: float = 0.0, path: str = "")
         yield f"{path}: {_short(stated)} stated, {_short(found)} found"
 
 
-def _is_same(stated: Any, found: Any, tolerance: float) -> bool:
+def _is_same(stated: object, found: object, tolerance: float) -> bool:
     if isinstance(stated, bool) or isinstance(found, bool):
         return stated is found
     if isinstance(stated, int | float) and isinstance(found, int | float):
@@ -38,6 +39,6 @@ def _is_same(stated: Any, found: Any, tolerance: float) -> bool:
     return type(stated) is type(found) and bool(stated == found)
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     text = str(value)
     return text if len(text) <= 40 else f"{text[:37]}..."
