@@ -78,7 +78,8 @@ def _figure(words: Words, camera: str, cells: Sequence[FormatCell], number: int)
     axis = figure.add_subplot(aspect="equal")
     axis.plot(*place.T, **style.dots(style.LIGHT, 2.0))
     for start, arrow in zip(place, scale * mean, strict=True):
-        axis.annotate("", tuple(start + arrow), tuple(start), arrowprops=_ARROW)
+        axis.annotate("", tuple(start + arrow), tuple(start), arrowprops=_ARROW,
+                      annotation_clip=False)  # fmt: skip  # else none that ends outside
     _dress(words, axis, place, size)
     caption = _caption(words, camera, cells, size, largest)
     return style.finish(figure, f"residuals_{number}", words.text("residuals.title"), caption)
