@@ -188,7 +188,7 @@ def test_a_report_in_chinese_leaves_the_data_in_english(adjusted, folder, tmp_pa
     assert result.exit_code == 0, result.output
     page = (out / "adjustment.html").read_text(encoding="utf-8")
     assert '<html lang="zh-CN">' in page
-    assert words_in("zh").text("document.title") in page
+    assert words_in("zh").text("bundle_document.title") in page
     chinese, english = (
         json.loads((each / "adjustment.json").read_text(encoding="utf-8"))
         for each in (out, adjusted[0])

@@ -230,7 +230,7 @@ def test_settings_are_those_that_were_asked_for(results, tables):
     words = words_in("en")
 
     def value(key):
-        return shown[words.text(f"setting.{key}")]
+        return shown[words.text(f"bundle_setting.{key}")]
 
     assert value("control") == "A, B"
     assert value("calibration") == "boresight.toml"
