@@ -23,7 +23,7 @@ def topic(words: Words, results: AdjustmentResults) -> Part:
 
 
 def _warnings(words: Words, results: AdjustmentResults) -> tuple[Content, ...]:
-    said = (*results.warnings, *map(words.notice, results.notices))
+    said = tuple(map(words.notice, results.notices))
     if not said:
         return (Paragraph(words.text("bundle_limits.no_warnings")),)
     return Paragraph(words.text("bundle_limits.warnings")), Bullets(said)

@@ -10,7 +10,7 @@ from ..document import words as document
 from ..document.catalogue import catalogue
 from .units import unit_of
 
-DOMAINS = ("document", "adjustment")
+DOMAINS = ("document", "notices", "adjustment")
 _BLOCK = "block"
 
 
@@ -48,7 +48,7 @@ class Words(document.Words):
         unit = unit_of(parameter.unit)
         return fmt.with_unit(unit.scaled(parameter.value), unit.name)
 
-    def notice(self, said: Notice) -> str:
+    def notice(self, said: Notice, *, plain: bool = False) -> str:
         """A notice in words; control points are counted, groups of observations named."""
         n_control, groups = said.values.get("n_control"), said.values.get("groups")
         if isinstance(n_control, int):
@@ -56,7 +56,7 @@ class Words(document.Words):
         if isinstance(groups, tuple):
             named = self.text("list.between").join(self.of("weight", str(g)) for g in groups)
             return self.of("notice", said.code, groups=named)
-        return super().notice(said)
+        return super().notice(said, plain=plain)
 
     def _control(self, n: int) -> str:
         return self.counted("control.count", n) if n else self.text("control.no")
