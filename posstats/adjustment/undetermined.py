@@ -29,7 +29,7 @@ Kind = Literal["parameter", "image", "connection"]
 FEW_IMAGES = 4  # below, a part of the block is named by its images, else by its strips
 
 
-_FAMILIES: dict[str, tuple[str, ...]] = {
+FAMILIES: dict[str, tuple[str, ...]] = {
     "gnss_shifts_by_prior": GNSS_SHIFTS,
     "gnss_drifts_by_prior": GNSS_DRIFTS,
     "yaw_or_kappa": ("boresight_yaw", "imu_kappa_shift"),
@@ -38,7 +38,7 @@ _FAMILIES: dict[str, tuple[str, ...]] = {
     "imu_drifts_by_prior": IMU_DRIFTS,
     "lever_arm_by_prior": LEVER_ARM,
 }
-_OF_CAMERA = "camera_by_prior"
+OF_CAMERA = "camera_by_prior"
 
 
 class UndeterminedBlockError(PosstatsError):
@@ -62,7 +62,7 @@ class UndeterminedBlockError(PosstatsError):
 
 def family_of(name: str) -> str:
     """The reason for which a parameter of this name may be known from its prior alone."""
-    return next((code for code, names in _FAMILIES.items() if name in names), _OF_CAMERA)
+    return next((code for code, names in FAMILIES.items() if name in names), OF_CAMERA)
 
 
 def undetermined(

@@ -23,15 +23,15 @@ class Words(document.Words):
         source, _, rest = name.partition("_")
         if source in ("gnss", "imu"):
             of, _, kind = rest.partition("_")
-            return self.text(f"parameter.{source}_{kind}", of=self.of("component", of))
+            return self.text(f"parameter.{source}_{kind}", of=self.of("bundle_component", of))
         if name == "camera_c":
             return self.text("parameter.distance")
         of = rest.rpartition("_")[2]
-        return self.text(f"parameter.{source}", of=self.known("component", of))
+        return self.text(f"parameter.{source}", of=self.known("bundle_component", of))
 
     def element(self, name: Element) -> str:
         """An element of an orientation."""
-        return self.of("component", name)
+        return self.of("bundle_component", name)
 
     def scope(self, scope: str) -> str:
         """``block``, or the strip in words."""
