@@ -5,6 +5,7 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
+from typing import get_args
 
 import click
 
@@ -15,6 +16,7 @@ from posstats.settings import (
     DriftScope,
     FrameChoice,
     RuleSetName,
+    ScenarioName,
     Scope,
     SelfCalibration,
     Settings,
@@ -292,8 +294,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     "--scenario",
     type=FOLDER,
     metavar="FILE",
-    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, "
-    "area3, wucaps-flat, wucaps-mountain.",
+    help=f"Scenario file (docs/simulation.md), or one of {', '.join(get_args(ScenarioName))}.",
 )
 @click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
