@@ -1,7 +1,6 @@
 """What an adjustment does not determine, why, and what would: as codes and values."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -10,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from posstats.adjustment.defects import Defect, defects, weak_parameters
 from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
 from posstats.arrays import Bools, Ids
-from posstats.contract.adjustment import Undetermined
+from posstats.contract.adjustment import OpenKind, Undetermined
 from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError, UndeterminedError
 from posstats.numerics.bundle.parameters import (
@@ -23,8 +22,6 @@ from posstats.numerics.bundle.parameters import (
     LEVER_ARM,
 )
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
-
-Kind = Literal["parameter", "image", "connection"]
 
 FEW_IMAGES = 4  # below, a part of the block is named by its images, else by its strips
 
@@ -141,7 +138,7 @@ def _explained(code: str) -> tuple[Notice, Notice]:
 
 
 def _open(
-    kind: Kind, names: Iterable[str], scope: str, reason: Notice, remedy: Notice
+    kind: OpenKind, names: Iterable[str], scope: str, reason: Notice, remedy: Notice
 ) -> Undetermined:
     return Undetermined(
         kind=kind, names=tuple(names), scope=scope, reason_notice=reason, remedy_notice=remedy
