@@ -1,6 +1,5 @@
 """`posstats accept`: from a block or its results to the acceptance document."""
 
-import json
 import re
 import textwrap
 from collections.abc import Iterator
@@ -11,8 +10,8 @@ from typing import Any
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
-from posstats.contract.files import as_values, to_json
-from posstats.contract.results import SCHEMA as RESULTS_SCHEMA
+from posstats.contract.files import as_values, from_json, to_json
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..acceptance.data import Demand, assembled, embedded
@@ -29,8 +28,6 @@ EXIT_CODES = {"accepted": 0, "rejected": 3, "not assessable": 4}
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*(mm|cm|m)\s*")
 _METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LARGEST_RESULTS = 500_000_000
-_LISTS = ("check_points", "check_point_residuals", "images", "models", "regression", "selection",
-          "warnings")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -154,24 +151,7 @@ def _read_results(path: Path) -> tuple[dict[str, Any], bytes]:
     if path.stat().st_size > _LARGEST_RESULTS:
         raise PosstatsError(f"{path}: more than {_LARGEST_RESULTS // 1_000_000} MB are not read")
     text = path.read_bytes()
-    try:
-        values = json.loads(text)
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise PosstatsError(f"{path} is no results.json: {error}") from error
-    if not isinstance(values, dict) or values.get("schema") != RESULTS_SCHEMA:
-        raise PosstatsError(
-            f"{path} is no results.json of posstats analyse: its schema is not {RESULTS_SCHEMA}"
-        )
-    strange = [name for name in _LISTS if not _is_list_of_rows(name, values.get(name))]
-    strange += [name for name in ("block", "settings") if not isinstance(values.get(name), dict)]
-    if strange:
-        raise PosstatsError(f"{path} lacks {', '.join(strange)} as posstats analyse writes them")
-    return values, text
-
-
-def _is_list_of_rows(name: str, value: object) -> bool:
-    kind = str if name == "warnings" else dict
-    return isinstance(value, list) and all(isinstance(row, kind) for row in value)
+    return as_values(from_json(text, Results, str(path))), text
 
 
 def _summary(acceptance: dict[str, Any]) -> Iterator[str]:

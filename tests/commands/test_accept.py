@@ -247,15 +247,15 @@ def test_what_cannot_be_judged_is_said(analysed, tmp_path, options, message):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"\x00\xff", "is no results.json"),
-        (b"{", "is no results.json"),
-        (b"[]", "its schema is not posstats-results/1"),
-        (b'{"schema": "posstats-adjustment/1"}', "its schema is not posstats-results/1"),
+        (b"\x00\xff", "results.json is no JSON"),
+        (b"{", "results.json is no JSON"),
+        (b"[]", "results.json has schema null"),
+        (b'{"schema": "posstats-adjustment/1"}', "this version reads posstats-results/1"),
         (
             b'{"schema": "posstats-results/1"}',
-            "results.json lacks check_points, check_point_residuals, images",
+            "results.json, posstats_version: found nothing",
         ),
-        (b"[" * 100_000, "is no results.json"),
+        (b"[" * 100_000, "results.json is no JSON"),
     ],
 )
 def test_a_file_that_holds_no_results_is_named(tmp_path, content, message):
@@ -277,7 +277,7 @@ def test_a_value_that_is_no_number_is_refused_without_a_traceback(analysed, tmp_
     path.write_text(json.dumps(values), encoding="utf-8")
     done = run("accept", path, "--profile", "jrc", "--gsd", "1m", "--out", tmp_path / "out")
     assert done.exit_code == 1
-    assert "does not hold values as posstats analyse writes them" in done.output
+    assert f"results.json, check_point_residuals[0].dx_m: found {json.dumps(value)}" in done.output
     assert not (tmp_path / "out").exists()
 
 
