@@ -2,16 +2,13 @@
 
 import hashlib
 from dataclasses import dataclass, field, fields
-from typing import Literal
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile_values import Date, Text
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
+from posstats.contract.acceptance import Exceeding, StatedComponent
 from posstats.settings import TerrainKind
-
-Exceeding = Literal["fail", "investigate"]
-Component = Literal["horizontal", "vertical"]
 
 __all__ = [
     "Contract",
@@ -108,7 +105,7 @@ class Statement:
         claim what was not tested, and are not to be used.
     """
 
-    component: Component
+    component: StatedComponent
     language: str = "en"
     least_points: int = 1
     tested: str = ""
@@ -192,7 +189,7 @@ class Profile:
         """The requirements that apply to a product, in order; possibly none."""
         return tuple(each for each in self.requirements if each.applies_to(product))
 
-    def statement(self, component: Component, language: str = "en") -> Statement | None:
+    def statement(self, component: StatedComponent, language: str = "en") -> Statement | None:
         """The wording for a component in a language, else in English; None without one.
 
         One that is withheld because a contract changed what it rests on counts as none.

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from posstats.acceptance.product import GIVEN_NAMES, Product
-from posstats.acceptance.profile import Component, Exceeding, Parties, ProfileFile
+from posstats.acceptance.profile import Parties, ProfileFile
 from posstats.acceptance.profile_values import (
     FilledText,
     Id,
@@ -21,6 +21,7 @@ from posstats.acceptance.profile_values import (
     named,
 )
 from posstats.acceptance.quantity_names import QUANTITIES
+from posstats.contract.acceptance import Exceeding, StatedComponent
 from posstats.formats.toml_document import TomlDocument, open_toml
 from posstats.formats.toml_lines import Place
 from posstats.formats.toml_types import NEEDED, Count
@@ -53,7 +54,7 @@ class RequirementTable:
 class StatementTable:
     """``[[statement]]``."""
 
-    component: Annotated[Component, NEEDED] | None = None
+    component: Annotated[StatedComponent, NEEDED] | None = None
     language: Language | None = None
     least_points: Count | None = None
     tested: Wording | None = None
