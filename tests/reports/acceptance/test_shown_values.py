@@ -117,3 +117,11 @@ def test_arrows_at_few_points_are_their_differences(few):
         assert scales[-1] > 0.0
         np.testing.assert_allclose(drawn / scales[-1], expected, atol=0.03 * np.abs(expected).max())
     assert scales[0] == pytest.approx(scales[1], rel=0.02)
+
+
+def test_key_figures_are_what_was_found_in_plan_then_in_height(made):
+    plan, height, points = build(made, RESULTS).key_figures
+    found = {row["id"]: row["found"] for row in made["requirements"]}
+    assert_cell(plan.value, found["rmse_h"], factor=per_si(plan.unit))
+    assert_cell(height.value, found["rmse_v"], factor=per_si(height.unit))
+    assert_cell(points.value, found["points"])

@@ -167,3 +167,17 @@ def test_arrows_of_image_residuals_point_from_computed_to_measured(values, docum
     factor = np.sum(drawn * mean) / np.sum(mean**2)
     assert factor > 0.0
     np.testing.assert_allclose(drawn / factor, mean, atol=0.03 * math.hypot(*mean.max(axis=0)))
+
+
+def test_key_figures_are_those_of_the_results_and_plan_before_height(values, document):
+    sigma0, image, orientations, points = document.key_figures
+    assert_cell(sigma0.value, values["sigma0"])
+    assert_cell(image.value, next(r["rms"] for r in values["groups"] if r["group"] == "image"))
+    median = {row["element"]: row["median_sigma"] for row in values["orientations"]}
+    assert_cell(orientations.value, max(median[axis] for axis in "xyz"))
+    (kept,) = (
+        row
+        for row in values["check_points"]
+        if row["orientation"] == "bundle" and not row["translation_removed"]
+    )
+    assert_cell(points.value, kept["rmse_horizontal_m"], kept["rmse_vertical_m"])
