@@ -1,75 +1,42 @@
-"""Every cell and vector of an adjustment's report against the results that it comes from."""
+"""Every cell and vector of the report on an adjustment against the results that it comes from."""
 
 import math
-from dataclasses import replace
+import re
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from adjustment_double import adjustment_double
 from shown_values import (
     arrows,
     assert_cell,
     assert_column,
     numbers,
     on_ground,
-    per_si,
+    paragraphs_of,
     svgs_of,
     tables_of,
 )
-from small_blocks import Layout, observed_block, true_block
 
-from posstats.adjustment import AdjustmentSettings, adjust_block
-from posstats.adjustment.results import adjustment_results
-from posstats.block.model import GroundPoints
-from posstats.reports.adjustment import document as adjustment_document
+from posstats.contract.notice import Notice
+from posstats.reports.adjustment.document import build
+from posstats.reports.adjustment.words import words_in
 from posstats.reports.figures import style
 
-UNITS = {"rad": "°", "m": "m", "px": "px", "rad/s": "nrad/s", "m/s": "mm/s"}
-
-
-def residual_cells():
-    """Mean residuals over the format that no exchange of axes or signs leaves as they are."""
-    rng = np.random.default_rng(6)
-    return [
-        {"camera": "c", "x_px": 250.0 + 500.0 * i, "y_px": 250.0 + 500.0 * j, "n": 9 + i,
-         "dx_px": float(0.1 + 0.02 * i + rng.uniform(0, 0.01)), "dy_px": float(0.03 * j - 0.05),
-         "rms_px": 0.2}
-        for i in range(4) for j in range(5)
-    ]  # fmt: skip
+PER_SHOWN = {"rad": ("°", math.degrees(1.0)), "m": ("m", 1.0), "px": ("px", 1.0), "": ("", 1.0),
+             "m/s": ("mm/s", 1e3), "rad/s": ("nrad/s", 1e9), "1/mm2": ("1/mm²", 1.0),
+             "standard deviations": ("σ", 1.0)}  # fmt: skip
+"""Units in which values are shown, and how many of them are one of the results' units."""
 
 
 @pytest.fixture(scope="module")
-def values():
-    truth = true_block(Layout(n_strips=3, n_images=4, n_points=120, sigma_image_px=0.1))
-    block = observed_block(truth, np.random.default_rng(8), np.array([0.003, -0.001, 0.002]))
-    free = adjust_block(block, AdjustmentSettings(control="none", robust=False))
-    known = np.flatnonzero(np.isfinite(free.adjusted.ground_m).all(axis=1))
-    chosen = known[np.linspace(0, len(known) - 1, 8).astype(int)]
-    rng = np.random.default_rng(9)
-    given = free.adjusted.ground_m[chosen] + rng.normal(0.0, [0.05, 0.08, 0.15], (8, 3))
-    points = GroundPoints(block.tie_points.point_id[chosen], given, np.arange(8) % 2 == 0,
-                          np.full(8, 0.05), np.full(8, 0.1))  # fmt: skip
-    settings = AdjustmentSettings(camera=True, self_calibration="brown", robust=False)
-    adjusted = adjust_block(replace(block, ground_points=points), settings)
-    made = adjustment_results(adjusted)
-    image = block.orientations.image[3]
-    made["blunders"] = [
-        {"kind": "image", "image": image, "point": "p7", "w": 12.3, "size": [3.25, -1.5],
-         "unit": "px", "found_by": "snooping", "taken_out": True},
-        {"kind": "imu", "image": image, "point": None, "w": -5.6, "size": [0.01, -0.02, 0.03],
-         "unit": "rad", "found_by": "snooping", "taken_out": True},
-    ]  # fmt: skip
-    made["correlations"] = [
-        {"first": "boresight_yaw", "first_scope": "block", "second": "imu_kappa_shift",
-         "second_scope": "block", "value": value}
-        for value in (0.96, -0.99, 0.97)
-    ]  # fmt: skip
-    made["image_residuals"] = residual_cells()
-    return made
+def results():
+    return adjustment_double()
 
 
 @pytest.fixture(scope="module")
-def document(values):
-    return adjustment_document.build(values)
+def document(results):
+    return build(results)
 
 
 @pytest.fixture(scope="module")
@@ -77,107 +44,273 @@ def tables(document):
     return tables_of(document)
 
 
-def test_groups_show_their_own_numbers_in_their_own_units(values, tables):
-    table = tables["groups"]
-    rows = [row for row in values["groups"] if row["n"]]
-    units = [UNITS.get(row["unit"], "") for row in rows]
-    assert_column(table.columns[1], [row["n"] for row in rows])
-    assert_column(table.columns[2], [row["redundancy"] for row in rows])
-    for column, key in ((3, "rms"), (4, "median_detectable")):
-        for cell, row, unit in zip(table.columns[column].cells, rows, units, strict=True):
-            assert_cell(cell, row[key], factor=per_si(unit))
-    assert_column(table.columns[6], [row["variance_factor"] for row in rows])
-    for cell, unit in zip(table.columns[5].cells, units, strict=True):
-        assert not unit or cell == unit
+def assert_scaled(column, rows, key):
+    """Every cell shows the value of its row in the unit that the row's unit column names."""
+    for cell, row in zip(column.cells, rows, strict=True):
+        assert_cell(cell, getattr(row, key), factor=PER_SHOWN[row.unit][1])
 
 
-def test_parameters_show_their_own_numbers_in_their_own_units(values, tables):
-    table, rows = tables["parameters"], values["parameters"]
-    assert len(table.rows) == len(rows)
-    for shown, row in zip(table.rows, rows, strict=True):
-        factor = {"mm/s": 1e3}.get(shown[4]) or per_si(shown[4])
-        assert shown[4] == UNITS.get(row["unit"], shown[4])
-        assert_cell(shown[2], row["value"], factor=factor)
-        assert_cell(shown[3], row["sigma"], factor=factor)
-        assert_cell(shown[5], row["t"])
-        assert_cell(shown[6], row["p"]) if row["p"] >= 0.001 else numbers(shown[6])
-    assert table.strong == {k for k, row in enumerate(rows) if row["significant"]}
+def in_metres(text):
+    """Numbers in a text that are metres, each with half of its last digit."""
+    return [numbers(found)[0] for found in re.findall(r"([\d.]+)\u00a0m\b", text)]
 
 
-def test_cameras_show_stated_beside_adjusted_and_column_before_row(values, tables):
-    (row,) = values["cameras"]
-    stated, adjusted = row["stated_principal_point_px"], row["principal_point_px"]
-    expected = (row["stated_principal_distance_px"], *stated,
-                row["principal_distance_px"], *adjusted)  # fmt: skip
-    for column, value in zip(tables["cameras"].columns[1:], expected, strict=True):
-        assert_column(column, [value])
-    # the camera's parameters: y of the principal point is upwards, rows are downwards
-    found = {each["name"]: each["value"] for each in values["parameters"]}
-    assert adjusted[0] - stated[0] == pytest.approx(found["camera_x0"])
-    assert adjusted[1] - stated[1] == pytest.approx(-found["camera_y0"])
-    change = row["principal_distance_px"] - row["stated_principal_distance_px"]
-    assert change == pytest.approx(found["camera_c"])
+def assert_units(column, rows):
+    assert column.cells == tuple(PER_SHOWN[row.unit][0] for row in rows)
 
 
-def test_orientations_show_accuracy_and_what_the_pos_differs(values, tables):
+def test_the_double_has_no_two_numbers_alike(results):
+    listed = (*results.groups, *results.parameters, *results.orientations, *results.control_points,
+              *results.check_points, *results.image_residuals)  # fmt: skip
+    values = [
+        getattr(row, field.name) for row in listed for field in fields(row)
+        if field.name not in ("n", "n_unchecked", "x_px", "y_px", "x_m", "y_m", "z_m",
+                              "prior_sigma")
+    ]  # fmt: skip
+    floats = [abs(value) for value in values if type(value) is float]
+    assert len(set(floats)) == len(floats)
+
+
+def test_groups_show_their_own_figures(results, tables):
+    columns, rows = tables["groups"].columns, results.groups
+    assert_column(columns[1], [row.n for row in rows])
+    assert_column(columns[2], [row.redundancy for row in rows])
+    assert_scaled(columns[3], rows, "rms")
+    assert_scaled(columns[4], rows, "median_detectable")
+    assert_units(columns[5], rows)
+    assert_column(columns[6], [row.variance_factor for row in rows])
+    assert_column(columns[7], [row.weight_factor for row in rows])
+    assert len(columns) == 8
+
+
+def test_groups_without_observations_and_estimated_weights_are_left_out(results):
+    rows = [replace(row, weight_factor=None, n=0 if row.group == "control" else row.n)
+            for row in results.groups]  # fmt: skip
+    table = tables_of(build(replace(results, groups=tuple(rows))))["groups"]
+    assert len(table.columns) == 7
+    assert_column(table.columns[1], [row.n for row in rows if row.group != "control"])
+
+
+def test_parameters_show_their_own_value_sigma_and_test(results, tables):
+    columns, rows = tables["parameters"].columns, results.parameters
+    words = words_in("en")
+    assert columns[0].cells == tuple(words.parameter(row.name) for row in rows)
+    assert len(set(columns[0].cells)) == len(rows)
+    assert_scaled(columns[2], rows, "value")
+    assert_scaled(columns[3], rows, "sigma")
+    assert_units(columns[4], rows)
+    assert_column(columns[5], [row.t for row in rows])
+    assert_column(columns[6], [row.p for row in rows])
+    said = (words.text("answer.no"), words.text("answer.yes"))
+    assert columns[7].cells == tuple(said[row.significant] for row in rows)
+    assert tables["parameters"].strong == {k for k, row in enumerate(rows) if row.significant}
+
+
+def test_what_a_parameter_is_known_from(results, tables):
+    words, cells = words_in("en"), tables["parameters"].columns[8].cells
+    expected = {(False, True): "prior", (False, False): "hardly"}
+    for cell, row in zip(cells, results.parameters, strict=True):
+        known = "freed" if row.prior_released else "measurements"
+        key = expected.get((row.determined, row.prior_sigma is not None), known)
+        assert cell == words.text(f"source.{key}")
+
+
+def test_cameras_show_stated_before_adjusted(results, tables):
+    columns, rows = tables["cameras"].columns, results.cameras
+    assert columns[0].cells == ("left", "right")
+    shown = [[c.cells[k] for c in columns[1:]] for k in range(2)]
+    for cells, row in zip(shown, rows, strict=True):
+        values = (row.stated_principal_distance_px, *row.stated_principal_point_px,
+                  row.principal_distance_px, *row.principal_point_px)  # fmt: skip
+        for cell, value in zip(cells, values, strict=True):
+            assert_cell(cell, value)
+    groups = [column.group for column in columns[1:]]
+    assert groups[:3] == [groups[0]] * 3
+    assert groups[3:] == [groups[3]] * 3
+    assert groups[0] != groups[3]
+
+
+def test_correlations_are_shown_the_strongest_first(tables):
+    columns = tables["correlations"].columns
+    assert_column(columns[2], [0.987, -0.961])
+    assert "S1-0" in columns[1].cells[0]
+    assert "S2" in columns[1].cells[1]
+
+
+def test_orientations_show_sigma_and_pos_minus_adjusted(results, tables):
+    columns, rows = tables["orientations"].columns, results.orientations
+    assert_units(columns[1], rows)
     keys = ("median_sigma", "max_sigma", "pos_mean", "pos_rms")
-    for shown, row in zip(tables["orientations"].rows, values["orientations"], strict=True):
-        assert shown[1] == UNITS[row["unit"]]
-        for cell, key in zip(shown[2:], keys, strict=True):
-            assert_cell(cell, row[key], factor=per_si(shown[1]))
+    for column, key in zip(columns[2:], keys, strict=True):
+        assert_scaled(column, rows, key)
+    assert [column.group for column in columns[2:]].count(columns[2].group) == 2
 
 
-@pytest.mark.parametrize("table_name", ["control_points", "check_point_list"])
-def test_points_show_east_north_up(values, tables, table_name):
-    table = tables[table_name]
-    if table_name == "control_points":
-        rows, keys = values["control_points"], ("dx_m", "dy_m", "dz_m", "largest_w")
-    else:
-        rows = [row for row in values["check_point_residuals"] if row["orientation"] == "bundle"]
-        keys = ("n_rays", "dx_m", "dy_m", "dz_m", "sigma_x_m", "sigma_y_m", "sigma_z_m")
-    assert table.columns[0].cells == tuple(row["point"] for row in rows)
-    for column, key in zip(table.columns[1:], keys, strict=True):
-        assert_column(column, [row[key] for row in rows])
+def test_differences_of_control_points_stand_under_their_axes(results, tables):
+    columns, rows = tables["control_points"].columns, results.control_points
+    assert columns[0].cells == tuple(row.point for row in rows)
+    for column, title, key in zip(
+        columns[1:4], ("east", "north", "up"), ("dx_m", "dy_m", "dz_m"), strict=True
+    ):
+        assert column.title == title
+        assert_column(column, [getattr(row, key) for row in rows])
+    assert_column(columns[4], [row.largest_w for row in rows])
 
 
-def test_blunders_show_measured_minus_adjusted_in_their_unit(values, tables):
-    for shown, row in zip(tables["blunders"].rows, values["blunders"], strict=True):
-        assert shown[1] == row["image"]
-        assert_cell(shown[3], row["w"])
-        assert_cell(shown[4], *row["size"], factor=per_si(UNITS[row["unit"]]))
-        assert shown[5] == UNITS[row["unit"]]
+def test_check_points_stand_under_their_own_heads(results, tables):
+    columns = tables["check_points_shift_kept"].columns
+    rows = [row for row in results.check_points if not row.translation_removed]
+    assert_column(columns[1], [row.n for row in rows])
+    heads = {"maximum": "max", "minimum": "min", "RMSE": "rmse"}
+    letters = {"H": "horizontal", "V": "vertical"}
+    for column in columns[2:8]:
+        key = f"{heads[column.group]}_{letters[column.title]}_m"
+        assert_column(column, [getattr(row, key) for row in rows])
+    for axis, column in enumerate(columns[8:]):
+        assert column.title == ("east", "north", "up")[axis]
+        assert_column(column, [row.shift_m[axis] for row in rows])
 
 
-def test_correlations_come_by_size_with_their_signs(tables):
-    assert_column(tables["correlations"].columns[2], [-0.99, 0.97, 0.96])
+def test_every_check_point_shows_differences_before_standard_deviations(results, tables):
+    columns = tables["check_point_list"].columns
+    rows = [row for row in results.check_point_residuals if row.orientation == "bundle"]
+    assert columns[0].cells == tuple(row.point for row in rows)
+    keys = ("n_rays", "dx_m", "dy_m", "dz_m", "sigma_x_m", "sigma_y_m", "sigma_z_m")
+    for column, key in zip(columns[1:], keys, strict=True):
+        assert_column(column, [getattr(row, key) for row in rows])
 
 
-def test_arrows_of_image_residuals_point_from_computed_to_measured(values, document):
-    """x of the image to the right, y up, as the results have them."""
-    found = arrows(svgs_of(document)["residuals_1"], style.BLUE)
-    cells = values["image_residuals"]
-    places = np.array([(row["x_px"], row["y_px"]) for row in cells])
-    mean = np.array([(row["dx_px"], row["dy_px"]) for row in cells])
+def test_blunders_show_their_place_and_measured_minus_adjusted(results, tables):
+    columns, rows = tables["blunders"].columns, results.blunders
+    assert columns[1].cells == tuple(row.image or "–" for row in rows)
+    assert columns[2].cells == tuple(row.point or "–" for row in rows)
+    assert_column(columns[3], [row.w for row in rows])
+    for cell, row in zip(columns[4].cells, rows, strict=True):
+        assert_cell(cell, *row.size, factor=PER_SHOWN[row.unit][1])
+    assert_units(columns[5], rows)
+    held = [k for k, row in enumerate(rows) if not row.taken_out]
+    kept = words_in("en").text("held.snooping")
+    assert [k for k, cell in enumerate(columns[6].cells) if cell == kept] == held
+
+
+def test_what_is_open_in_several_strips_stands_in_one_row(results, tables):
+    table, words = tables["observability"], words_in("en")
+    assert [len(column.cells) for column in table.columns] == [3, 3, 3]
+    assert "S1" in table.columns[0].cells[0]
+    assert "S2" in table.columns[0].cells[0]
+    rows = results.observability[1:]
+    assert table.columns[1].cells == tuple(words.notice(row.reason_notice) for row in rows)
+    assert table.columns[2].cells == tuple(words.notice(row.remedy_notice) for row in rows)
+
+
+def test_settings_are_those_that_were_asked_for(results, tables):
+    settings = results.settings
+    shown = dict(tables["settings"].rows)
+    words = words_in("en")
+
+    def value(key):
+        return shown[words.text(f"setting.{key}")]
+
+    assert value("control") == "A, B"
+    assert value("calibration") == "boresight.toml"
+    degree = math.degrees(1.0)
+    assert_cell(value("position"), settings.position_m)
+    assert_cell(value("angle"), settings.angle_rad, factor=degree)
+    assert_cell(value("image"), settings.image_px)
+    switches = ("camera", "lever_arm", "estimate_weights", "drop_insignificant", "robust")
+    assert [value(key) for key in switches] == ["yes", "no", "yes", "yes", "no"]
+    priors = {
+        "gnss_shift": (settings.priors.shift_m, 1.0),
+        "gnss_drift": (settings.priors.drift_m_per_s, 100.0),
+        "imu_shift": (settings.priors.shift_rad, degree),
+        "boresight": (settings.priors.boresight_rad, degree),
+    }
+    for key, (prior, factor) in priors.items():
+        cell = shown[words.text("prior.sigma", parameter=words.text(f"prior.{key}"))]
+        number, half = numbers(cell)[0]
+        assert abs(number - prior * factor) <= half * (1.0 + 1e-9)
+    free = words.text("prior.sigma", parameter=words.text("prior.imu_drift"))
+    assert shown[free] == words.text("prior.free")
+
+
+def test_key_figures_are_sigma0_residuals_worst_axes_and_check_points(results, document):
+    sigma0, image, orientation, points = document.key_figures
+    assert_cell(sigma0.value, results.sigma0)
+    assert_cell(image.value, results.groups[0].rms)
+    by_unit = {unit: max(row.median_sigma for row in results.orientations if row.unit == unit)
+               for unit in ("m", "rad")}  # fmt: skip
+    assert_cell(orientation.value, by_unit["m"])
+    number, half = numbers(orientation.remark)[0]
+    assert abs(number - math.degrees(by_unit["rad"])) <= half
+    row = results.check_points[0]
+    assert_cell(points.value, row.rmse_horizontal_m, row.rmse_vertical_m)
+
+
+def test_points_are_said_to_be_known_east_north_and_up(results, document):
+    (said,) = [text for text in paragraphs_of(document) if " 319 " in text]
+    shown = in_metres(said)
+    for (number, half), value in zip(shown, results.points.median_sigma_m, strict=True):
+        assert abs(number - value) <= half
+
+
+def test_the_verdict_compares_found_with_predicted_and_with_the_pos(results, document):
+    bundle = [row for row in results.check_point_residuals if row.orientation == "bundle"]
+    predicted_h = math.sqrt(np.mean([r.sigma_x_m**2 + r.sigma_y_m**2 for r in bundle]))
+    predicted_v = math.sqrt(np.mean([r.sigma_z_m**2 for r in bundle]))
+    found, pos = results.check_points[0], results.check_points[2]
+    expected = [found.rmse_horizontal_m, found.rmse_vertical_m, predicted_h, predicted_v,
+                pos.rmse_horizontal_m, pos.rmse_vertical_m]  # fmt: skip
+    shown = in_metres(document.verdict.summary)[-6:]
+    for (number, half), value in zip(shown, expected, strict=True):
+        assert abs(number - value) <= half
+
+
+def assert_alike(drawn, differences):
+    """Drawn is a positive multiple of the differences, to the digits of the figure."""
+    factor = np.sum(drawn * differences) / np.sum(differences**2)
+    assert factor > 0.0
+    np.testing.assert_allclose(drawn / factor, differences, atol=0.02 * np.abs(differences).max())
+
+
+def drawn_vectors(found, places):
+    """Vectors (n, 2) of arrows in the axes of the places that they start from."""
     tails = np.array([tail for tail, _ in found])
     offset, turn = on_ground(places, tails)
-    np.testing.assert_allclose(offset + tails @ turn, places, atol=10.0)
-    assert turn[0, 0] > 0.0
-    assert turn[1, 1] > 0.0
-    drawn = np.array([tip - tail for tail, tip in found]) @ turn
-    factor = np.sum(drawn * mean) / np.sum(mean**2)
-    assert factor > 0.0
-    np.testing.assert_allclose(drawn / factor, mean, atol=0.03 * math.hypot(*mean.max(axis=0)))
+    np.testing.assert_allclose(offset + tails @ turn, places, atol=0.02 * np.ptp(places))
+    return np.array([tip - tail for tail, tip in found]) @ turn
 
 
-def test_key_figures_are_those_of_the_results_and_plan_before_height(values, document):
-    sigma0, image, orientations, points = document.key_figures
-    assert_cell(sigma0.value, values["sigma0"])
-    assert_cell(image.value, next(r["rms"] for r in values["groups"] if r["group"] == "image"))
-    median = {row["element"]: row["median_sigma"] for row in values["orientations"]}
-    assert_cell(orientations.value, max(median[axis] for axis in "xyz"))
-    (kept,) = (
-        row
-        for row in values["check_points"]
-        if row["orientation"] == "bundle" and not row["translation_removed"]
-    )
-    assert_cell(points.value, kept["rmse_horizontal_m"], kept["rmse_vertical_m"])
+def test_arrows_of_the_format_are_mean_residuals_measured_minus_adjusted(results, document):
+    cells = results.image_residuals
+    places = np.array([(cell.x_px, cell.y_px) for cell in cells])
+    drawn = drawn_vectors(arrows(svgs_of(document)["residuals_1"], style.BLUE), places)
+    assert_alike(drawn, np.array([(cell.dx_px, cell.dy_px) for cell in cells]))
+
+
+@pytest.mark.parametrize(("panel", "orientation"), [(0, "pos"), (1, "bundle")])
+def test_arrows_at_check_points_point_from_given_to_computed(results, document, panel, orientation):
+    points = [row for row in results.check_point_residuals if row.orientation == orientation]
+    places = np.array([(row.x_m, row.y_m) for row in points])
+    svg, own = svgs_of(document)["check_points"], slice(3 * panel, 3 * panel + 3)
+    difference = np.array([(row.dx_m, row.dy_m, row.dz_m) for row in points])
+    plane = drawn_vectors(arrows(svg, style.BLUE)[own], places)
+    height = drawn_vectors(arrows(svg, style.VERMILLION)[own], places)
+    assert_alike(plane, difference[:, :2])
+    assert_alike(height, np.column_stack([np.zeros(3), difference[:, 2]]))
+
+
+def test_the_same_numbers_stand_in_both_languages(results, tables):
+    chinese = tables_of(build(results, "zh"))
+    assert chinese.keys() == tables.keys()
+    for name, table in tables.items():
+        for column, other in zip(table.columns, chinese[name].columns, strict=True):
+            if column.align == "right":
+                assert other.cells == column.cells
+
+
+def test_warnings_are_said_in_the_language_of_the_report(results):
+    notice = Notice(code="weights_kept", values={"groups": ("gnss", "control")})
+    for language in ("en", "zh"):
+        made = build(replace(results, notices=(notice,)), language)
+        (said,) = [i.texts for s in made.sections for i in s.items if i.kind == "bullets"]
+        assert said == (words_in(language).notice(notice),)
