@@ -38,13 +38,17 @@ class CheckPointStatistics:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckPointResidual:
-    """A check point by one orientation: computed minus given, translation kept, crs axes.
+class _OfAnOrientation:
+    orientation: Annotated[str, about("as above")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckPointDifference:
+    """A check point: computed minus given, translation kept, crs axes.
 
     A point that cannot be intersected has no differences.
     """
 
-    orientation: Annotated[str, about("as above")]
     point: Annotated[str, about("id of the point")]
     n_rays: Annotated[int, about("images that show it")]
     status: Annotated[
@@ -67,3 +71,8 @@ class CheckPointResidual:
     z_m: Annotated[float, about("given")]
     dz_m: Annotated[float | None, about("difference")]
     sigma_z_m: Annotated[float | None, about("standard deviation of the difference")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckPointResidual(CheckPointDifference, _OfAnOrientation):
+    """A check point by one orientation."""

@@ -49,7 +49,7 @@ def from_json(text: str | bytes, kind: type[D], name: str) -> D:
     """
     try:
         values = msgspec.json.decode(text)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise PosstatsError(f"{name} is no JSON: {error}") from error
     return from_values(values, kind, name)
 

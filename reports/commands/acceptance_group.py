@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 import click
 
@@ -18,7 +18,9 @@ class _Length(click.ParamType[float]):
 
     name = "length"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: str | float, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         from .accept import length_m
 
         if isinstance(value, float):
@@ -30,6 +32,14 @@ class _Length(click.ParamType[float]):
 
 
 LENGTH = _Length()
+
+language_option = click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of what is written or said.",
+)
 
 
 @click.command()
@@ -59,13 +69,7 @@ LENGTH = _Length()
     help=f"Orientation to judge.  [default: the first of {', '.join(get_args(JudgedOrientation))} "
     "that the results hold]",
 )
-@click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of the document.",
-)
+@language_option
 @click.option(
     "--templates",
     type=FOLDER,
@@ -193,8 +197,15 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     metavar="DIR",
     help="Templates that you know; pages of others are not believed.",
 )
+@language_option
 @clear_errors
-def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path | None) -> None:
+def verify(
+    file: Path,
+    inputs: Path | None,
+    trust: Path | None,
+    templates: Path | None,
+    language: Language,
+) -> None:
     """Verify the acceptance document FILE.pdf: a line a question.
 
     Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
@@ -205,11 +216,13 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
     from ..verification.questions import holds
+    from ..verification.words import line, words_of
     from .verify import verify_file
 
     answers = verify_file(file, inputs, trust, templates, now=timestamp.clock())
+    words = words_of(language)
     for each in answers:
-        click.echo(each.line)
+        click.echo(line(words, each))
     if not holds(answers):
         sys.exit(1)
 

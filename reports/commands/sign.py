@@ -51,7 +51,7 @@ def sign_file(
 
 def _document_id(path: Path, data: bytes) -> str:
     try:
-        return str(open_archive(part(data)).acceptance.get("document_id"))
+        return open_archive(part(data)).acceptance.document_id
     except UnreadableArchiveError as error:
         raise UnreadableArchiveError(f"{path} is not signed: {error}") from error
 

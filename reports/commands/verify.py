@@ -13,11 +13,11 @@ from ..acceptance.data import reassess
 from ..acceptance.page import render_document
 from ..acceptance.writing import read_templates
 from ..archive.file import read_file
+from ..verification.answers import Answer
 from ..verification.questions import verify
 from ..verification.recomputation import recompute
 from ..verification.signature import read_trust
 from ..verification.steps import Steps
-from ..verification.words import Answer
 
 
 def verify_file(

@@ -5,7 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acceptance_evidence import evidence_of, regression_rows, residual_rows, results_of
+from acceptance_evidence import (
+    evidence_of,
+    regression_rows,
+    residual_rows,
+    results_of,
+    selection_rows,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,10 +24,13 @@ from posstats.acceptance.profile_files import load_profile
 from posstats.acceptance.quantities import FINDERS, Question, find
 from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.acceptance.reasons import Unavailable
+from posstats.contract.results import Bundle
 from posstats.errors import PosstatsError
 
 # horizontal 5, 0, 5, vertical 1, 2, 5, means 1, 3, 2
 HAND = [[3.0, 4.0, -1.0], [0.0, 0.0, 2.0], [0.0, 5.0, 5.0]]
+BUNDLE = Bundle(sigma0=1.1, dof=40.0, p_value=0.3, image_rms_px=0.21, sigma_image_px=0.2,
+                n_rays=400, n_rejected_rays=0, n_control_points=0)  # fmt: skip
 TEN_CM = Product(class_h_m=0.10, class_v_m=0.10)
 
 
@@ -103,7 +112,7 @@ def test_the_poorest_quadrant_counts():
 
 
 def test_values_of_the_bundle_belong_to_the_orientation_of_the_bundle():
-    bundle = {"bundle": {"image_rms_px": 0.21, "sigma0": 1.1}}
+    bundle = {"bundle": BUNDLE}
     orientations = ("pos", "selected", "bundle")
     asked = {"orientations": orientations, **bundle}
     assert found("sigma0", orientation="bundle", **asked) == 1.1
@@ -116,21 +125,18 @@ def test_values_of_the_bundle_belong_to_the_orientation_of_the_bundle():
 
 def test_drifts_that_were_taken_off_are_not_tested_and_holm_counts_the_others():
     assert found("remaining_drift_p", orientation="pos") == pytest.approx(3e-6)
-    everything = [
-        {"frame": "ground", "angle": angle, "scope": "block", "form": "linear"}
-        for angle in ("omega", "phi", "kappa")
-    ]
+    everything = selection_rows(dict.fromkeys(("omega", "phi", "kappa"), "linear"))
     assert found("remaining_drift_p", selection=everything) == 1.0
     # without a covariance of the errors there is no GLS, and OLS is all there is
     ols = regression_rows({"omega": None, "phi": None, "kappa": None})
     assert found("remaining_drift_p", regression=ols) == pytest.approx(2e-9)
     with pytest.raises(Unavailable):
-        found("remaining_drift_p", regression=[])
+        found("remaining_drift_p", regression=())
 
 
 def test_the_survey_of_the_contract_stands_in_where_the_block_states_none():
-    rows = residual_rows(HAND, sigma_xy_m=None, sigma_z_m=None)
-    rows[0] |= {"survey_sigma_xy_m": 0.03}
+    first, *others = residual_rows(HAND, sigma_xy_m=None, sigma_z_m=None)
+    rows = (replace(first, survey_sigma_xy_m=0.03), *others)
     with pytest.raises(Unavailable, match="survey accuracy not stated"):
         found("survey_h", check_point_residuals=rows)
     stated = Product(survey_sigma_h_m=0.01, survey_sigma_v_m=0.05)
@@ -141,8 +147,9 @@ def test_the_survey_of_the_contract_stands_in_where_the_block_states_none():
 
 
 def test_points_that_could_not_be_measured_count_in_their_share_alone():
-    rows = residual_rows(HAND)
-    rows[0] |= {"status": "fewer than two rays", "dx_m": None, "dy_m": None, "dz_m": None}
+    first, *others = residual_rows(HAND)
+    lost = replace(first, status="fewer than two rays", dx_m=None, dy_m=None, dz_m=None)
+    rows = (lost, *others)
     assert found("measured_share", check_point_residuals=rows) == pytest.approx(2 / 3)
     assert found("mean_error_v", check_point_residuals=rows) == pytest.approx(3.5)
 
@@ -167,14 +174,12 @@ def test_every_quantity_that_a_profile_may_name_can_be_found():
 
 
 def test_the_orientation_is_the_best_that_the_results_hold_whatever_its_outcome():
-    worse = results_of(HAND, ("pos", "selected", "bundle"))
-    for row in worse["check_point_residuals"]:
-        if row["orientation"] == "bundle":
-            row["dx_m"] = 1e3
+    rows = residual_rows(HAND, "pos") + residual_rows(1e3 * np.array(HAND), "bundle")
+    worse = results_of(HAND, ("pos", "selected", "bundle"), check_point_residuals=rows)
     assert best_orientation(worse) == "bundle"
     assert best_orientation(results_of(HAND)) == "selected"
-    with pytest.raises(PosstatsError, match="hold no orientation adjusted: choose one of selected"):
-        evidence(worse | {"check_points": [{"orientation": "selected"}]}, "adjusted", Product())
+    with pytest.raises(PosstatsError, match="adjusted: choose one of selected"):
+        evidence(results_of(HAND, ("selected",)), "adjusted", Product())
 
 
 def verdict_of(*requirements, difference_m=HAND, product=None):

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from needed import chinese_typeface
 from small_scenario import small_block
 
-from posstats.acceptance.assessment import ChosenStatement
+from posstats.contract.acceptance import ChosenStatement, JudgedRequirement
 from posstats.formats.block_folder import write_block
 from posstats.reports.acceptance.data import _filled
 from posstats.reports.acceptance.units import Lengths, margin
@@ -247,15 +247,12 @@ def test_what_cannot_be_judged_is_said(analysed, tmp_path, options, message):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"\x00\xff", "is no results.json"),
-        (b"{", "is no results.json"),
-        (b"[]", "its schema is not posstats-results/1"),
-        (b'{"schema": "posstats-adjustment/1"}', "its schema is not posstats-results/1"),
-        (
-            b'{"schema": "posstats-results/1"}',
-            "results.json lacks check_points, check_point_residuals, images",
-        ),
-        (b"[" * 100_000, "is no results.json"),
+        (b"\x00\xff", "results.json is no JSON"),
+        (b"{", "results.json is no JSON"),
+        (b"[]", "results.json has schema None"),
+        (b'{"schema": "posstats-adjustment/1"}', "this version reads 'posstats-results/1'"),
+        (b'{"schema": "posstats-results/1"}', "missing required field"),
+        (b"[" * 100_000, "results.json is no JSON"),
     ],
 )
 def test_a_file_that_holds_no_results_is_named(tmp_path, content, message):
@@ -277,7 +274,7 @@ def test_a_value_that_is_no_number_is_refused_without_a_traceback(analysed, tmp_
     path.write_text(json.dumps(values), encoding="utf-8")
     done = run("accept", path, "--profile", "jrc", "--gsd", "1m", "--out", tmp_path / "out")
     assert done.exit_code == 1
-    assert "does not hold values as posstats analyse writes them" in done.output
+    assert "$.check_point_residuals[0].dx_m" in done.output
     assert not (tmp_path / "out").exists()
 
 
@@ -285,12 +282,16 @@ def test_a_value_that_is_no_number_is_refused_without_a_traceback(analysed, tmp_
 def test_printed_digits_never_contradict_a_narrow_verdict(share):
     class_m = 1.0388
     chosen = ChosenStatement(
-        "horizontal", "tested", "{class_cm} {found_cm}", class_m, class_m * (1.0 - share), 40
-    )
+        component="horizontal", kind="tested", template="{class_cm} {found_cm}",
+        class_m=class_m, found_m=class_m * (1.0 - share), n_points=40,
+    )  # fmt: skip
     class_cm, found_cm = map(float, _filled(chosen).rstrip(".").split())
     assert found_cm <= class_cm
-    row = {"quantity": "rmse_h", "unit": "m", "found": class_m * (1.0 + share), "limit": class_m,
-           "margin": -share * class_m}  # fmt: skip
+    row = JudgedRequirement(
+        id="rmse_h", clause="", quantity="rmse_h", source="", mandatory=True, exceeding="fail",
+        found=class_m * (1.0 + share), limit=class_m, limit_formula="class_h", unit="m",
+        margin=-share * class_m, verdict="fail", reason_code="exceeds", reason_values={},
+    )  # fmt: skip
     shown = margin(row, Lengths(METRE, 3))
     assert shown.startswith(MINUS) or share < 1e-7
     assert shown != "0.000\u00a0m" or share < 1e-7

@@ -1,6 +1,7 @@
 """A user's templates: single blocks replaced, in a sandbox, on a page that loads nothing."""
 
 import base64
+from dataclasses import replace
 
 import acceptance_values as values
 import pytest
@@ -43,8 +44,7 @@ def test_a_whole_template_extends_ours_and_a_style_sheet_adds_to_it():
 
 
 def test_data_are_escaped_in_a_users_template_too():
-    hostile = values.acceptance(12)
-    hostile["contract"]["title"] = values.HOSTILE
+    hostile = replace(CASE, contract=replace(CASE.contract, title=values.HOSTILE))
     files = {"letterhead.html.j2": b"<p>{{ report.subject }}</p>"}
     assert "script" not in read(render_document(hostile, RESULTS, files)).tags
 
