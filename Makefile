@@ -43,6 +43,11 @@ coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth (many mi
 	$(BIN)/python benchmarks/bundle_coverage.py
 	$(BIN)/python benchmarks/acceptance_coverage.py
 
+.PHONY: mutants
+mutants: $(READY)  ## Put kept faults into copies of the source: the tests must find each (many minutes)
+	@.ci/debian-packages --pango
+	$(BIN)/python benchmarks/mutants.py
+
 .PHONY: seeds
 seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
 	$(BIN)/python benchmarks/paper_seeds.py

@@ -77,11 +77,7 @@ def read(file: Path = KEPT) -> tuple[Mutant, ...]:
 
 
 def copy_to(folder: Path) -> Path:
-    """Copy the tree so that `posstats` and all that is in it are imported from there.
-
-    Times of files are kept: compiled kernels, which are copied too, stay valid for files that
-    do not change, and for no others.
-    """
+    """Copy the tree so that `posstats` and all that is in it are imported from there."""
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
@@ -89,17 +85,17 @@ def copy_to(folder: Path) -> Path:
         else:
             shutil.copy2(source, folder / name)
     for name in SEPARATE:
-        (folder / "posstats" / name).symlink_to(folder / name, target_is_directory=True)
+        (folder / "posstats" / name).symlink_to(Path("..", name), target_is_directory=True)
     return folder
 
 
-def run_tests(tree: Path, tests: Sequence[str]) -> int | None:
+def run_tests(tree: Path, tests: Sequence[str], most_s: float | None = MOST_S) -> int | None:
     """Exit code of pytest over the tests of a copy; None if it had to be stopped."""
     surroundings = os.environ | {"PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
     try:
         done = subprocess.run(
-            command, cwd=tree, env=surroundings, capture_output=True, timeout=MOST_S, check=False
+            command, cwd=tree, env=surroundings, capture_output=True, timeout=most_s, check=False
         )
     except subprocess.TimeoutExpired:
         return None
@@ -108,12 +104,16 @@ def run_tests(tree: Path, tests: Sequence[str]) -> int | None:
     return done.returncode
 
 
-def judge(mutant: Mutant) -> str:
-    """What became of a mutant: killed, SURVIVED, STALE or BROKEN (its tests do not start)."""
+def judge(mutant: Mutant, sound: Path) -> str:
+    """What became of a mutant: killed, SURVIVED, STALE or BROKEN (its tests do not start).
+
+    It is put into a copy of the sound tree. Times of files are kept: kernels that were compiled
+    there stay valid for files that do not change, and for no others.
+    """
     if (n := mutant.count()) != 1:
         return f"STALE ({n} times in {mutant.file})"
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
-        tree = copy_to(Path(folder))
+        tree = Path(shutil.copytree(sound, Path(folder, "tree"), symlinks=True))
         mutant.put_into(tree)
         code = run_tests(tree, mutant.tests)
     if code in (None, FAILED):
@@ -121,19 +121,17 @@ def judge(mutant: Mutant) -> str:
     return "SURVIVED" if code == PASSED else "BROKEN"
 
 
-def sound(mutants: Iterable[Mutant]) -> bool:
+def is_sound(tree: Path, mutants: Iterable[Mutant]) -> bool:
     """Whether all tests pass in a copy without a mutant, and whether they run in that copy."""
+    shown = "import posstats.reports as r; print(r.__file__)"
+    found = subprocess.run(
+        [sys.executable, "-c", shown], cwd=tree, env=os.environ | {"PYTHONPATH": str(tree)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    if not found.stdout.startswith(str(tree)):
+        raise SystemExit(f"a copy imports {found.stdout.strip()}, which is not in it")
     tests = tuple(dict.fromkeys(chain.from_iterable(each.tests for each in mutants)))
-    with tempfile.TemporaryDirectory(prefix="mutant-none-") as folder:
-        tree = copy_to(Path(folder))
-        shown = "import posstats.reports as r; print(r.__file__)"
-        found = subprocess.run(
-            [sys.executable, "-c", shown], cwd=tree, env=os.environ | {"PYTHONPATH": str(tree)},
-            capture_output=True, text=True, check=True,
-        )  # fmt: skip
-        if not found.stdout.startswith(folder):
-            raise SystemExit(f"a copy imports {found.stdout.strip()}, which is not in it")
-        return run_tests(tree, tests) == PASSED
+    return run_tests(tree, tests, most_s=None) == PASSED
 
 
 def main() -> int:
@@ -145,14 +143,17 @@ def main() -> int:
         each for each in read()
         if not asked.words or any(word in each.name for word in asked.words)
     ]  # fmt: skip
-    if not sound(each for each in mutants if each.count() == 1):
-        print("the tests fail without any mutant")
-        return 2
     killed = 0
-    with ThreadPoolExecutor(asked.jobs) as pool:
-        for mutant, found in zip(mutants, pool.map(judge, mutants), strict=True):
-            killed += found == "killed"
-            print(f"{found:8}  {mutant.name}", flush=True)
+    with tempfile.TemporaryDirectory(prefix="mutant-none-") as folder:
+        sound = copy_to(Path(folder).resolve())
+        if not is_sound(sound, mutants):
+            print("the tests fail without any mutant")
+            return 2
+        with ThreadPoolExecutor(asked.jobs) as pool:
+            judged = pool.map(lambda each: judge(each, sound), mutants)
+            for mutant, found in zip(mutants, judged, strict=True):
+                killed += found == "killed"
+                print(f"{found:8}  {mutant.name}", flush=True)
     print(f"{killed} of {len(mutants)} mutants killed, {len(mutants) - killed} not")
     return 0 if killed == len(mutants) else 1
 

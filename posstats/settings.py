@@ -7,7 +7,7 @@ The library, the command line and the files' contract take them from here. No Nu
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from posstats.errors import PosstatsError
 
@@ -135,7 +135,7 @@ class AdjustmentSettings:
             _check(self, control=NamedControl)
 
 
-def _check(settings: object, **allowed: Any) -> None:
+def _check(settings: object, **allowed: object) -> None:
     """Raise a PosstatsError for a setting that is none of the values of its Literal type."""
     for name, choices in allowed.items():
         value = getattr(settings, name)

@@ -5,12 +5,14 @@ from dataclasses import dataclass, field, fields
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
 from posstats.acceptance.product import Product
+from posstats.acceptance.profile_values import Date, Text
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
 from posstats.contract.acceptance import Exceeding, StatedComponent
 from posstats.settings import TerrainKind
 
 __all__ = [
     "Contract",
+    "Parties",
     "Product",
     "Profile",
     "ProfileFile",
@@ -127,22 +129,25 @@ class ProfileFile:
 
 
 @dataclass(frozen=True)
-class Contract:
-    """Who delivers what to whom, as the contract file says it; "" where it does not.
+class Parties:
+    """Who delivers what to whom, as ``[contract]`` says it; "" where it does not."""
 
-    `product` holds what the file states of the product.
-    """
+    number: Text = ""
+    title: Text = ""
+    client: Text = ""
+    contractor: Text = ""
+    inspector: Text = ""
+    flight: Text = ""
+    flight_date: Date = ""
+    sensor: Text = ""
+    place: Text = ""
+    remarks: Text = ""
 
-    number: str = ""
-    title: str = ""
-    client: str = ""
-    contractor: str = ""
-    inspector: str = ""
-    flight: str = ""
-    flight_date: str = ""
-    sensor: str = ""
-    place: str = ""
-    remarks: str = ""
+
+@dataclass(frozen=True)
+class Contract(Parties):
+    """A contract file: the parties, and in `product` what it states of the product."""
+
     product: Product = field(default_factory=Product)
 
 

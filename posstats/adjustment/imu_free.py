@@ -34,9 +34,9 @@ from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.system import BundleSystem, State
 from posstats.numerics.solvers.arrow import ArrowFactor, factorised
+from posstats.numerics.solvers.robust import SMALLEST_SCALE
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
 from posstats.statistics.global_test import GlobalTest, global_test
-from posstats.statistics.robust import SMALLEST_SCALE
 
 Progress = Callable[[int, int], object]
 

@@ -18,7 +18,7 @@ from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
 from posstats.adjustment.diagnosis import GROSS, likely_mistake
-from posstats.adjustment.observability import Undetermined, singular_message, undetermined
+from posstats.adjustment.parameter_choice import Dropped, select_parameters
 from posstats.adjustment.priors import with_fitting_priors
 from posstats.adjustment.screening import (
     contradicting_rays,
@@ -26,7 +26,6 @@ from posstats.adjustment.screening import (
     without_control,
     without_rays,
 )
-from posstats.adjustment.selection import Dropped, select_parameters
 from posstats.adjustment.significance import (
     Correlations,
     LocalTest,
@@ -37,9 +36,11 @@ from posstats.adjustment.significance import (
     scale,
 )
 from posstats.adjustment.snooping import Snooping, snoop
+from posstats.adjustment.undetermined import singular_block, undetermined
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
 from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.contract.adjustment import Undetermined
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
@@ -186,7 +187,7 @@ def adjust_block(
             weights = _combined(weights, estimate_weights(problem))
             problem, adjusted = weights.problem, weights.result
     except UndeterminedError as error:
-        raise PosstatsError(singular_message(error, stated, ids)) from error
+        raise singular_block(error, stated, ids) from error
     except (ConvergenceError, GeometryError) as error:
         mistake = likely_mistake(tied, parameters, control, np.inf)
         if mistake is None:

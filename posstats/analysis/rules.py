@@ -1,13 +1,13 @@
 """Which angles to correct, in which form: rule sets are data, decisions carry their reason."""
 
-import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, get_args
+from typing import Annotated, Literal
 
 import numpy as np
+from msgspec import Meta
 
 from posstats.analysis.regression import (
     BLOCK_SCOPE,
@@ -16,7 +16,9 @@ from posstats.analysis.regression import (
     DriftFit,
 )
 from posstats.errors import BlockFormatError, PosstatsError
-from posstats.formats.toml_section import nearest
+from posstats.formats.hints import nearest
+from posstats.formats.toml_document import open_toml
+from posstats.formats.toml_types import Check, repeated
 from posstats.settings import FitKind, Form, Scope
 from posstats.statistics.holm import holm
 
@@ -49,13 +51,17 @@ class RuleSet:
     """
 
     fit: FitKind
-    forms: tuple[Form, ...]
-    alpha: float
-    name: str = ""
+    forms: Annotated[
+        tuple[Literal["constant", "linear"], ...],
+        Meta(min_length=1, description='a list of "constant", "linear"'),
+        Check(repeated),
+    ]
+    alpha: Annotated[float, Meta(gt=0, lt=1, description="a number between 0 and 1")]
+    name: Annotated[str, Meta(min_length=1)] = ""
     description: str = ""
     holm: bool = False
-    min_r_squared: float = 0.0
-    min_parallax_gain: float = 0.0
+    min_r_squared: Annotated[float, Meta(ge=0, le=1, description="a number from 0 to 1")] = 0.0
+    min_parallax_gain: Annotated[float, Meta(ge=0, lt=1, description="a share from 0 to 1")] = 0.0
 
 
 @dataclass(frozen=True)
@@ -286,45 +292,5 @@ def _with_gain(decision: Decision, gain: float, min_gain: float, method: str) ->
 
 
 def _read_rules(content: bytes, source: str, name: str) -> RuleSet:
-    try:
-        values = tomllib.loads(content.decode("utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
-        raise RuleFormatError([f"{source}: not a TOML file: {problem}"]) from problem
-    findings = [f"{source}: {finding}" for finding in _findings(values)]
-    if findings:
-        raise RuleFormatError(findings)
-    return RuleSet(**{"name": name, **values, "forms": tuple(values["forms"])})
-
-
-def _findings(values: Mapping[str, Any]) -> list[str]:
-    """What is wrong with a rule file, one sentence per key."""
-    known = [field.name for field in fields(RuleSet)]
-    findings = [f"unknown key {key!r}{nearest(key, known)}" for key in values if key not in known]
-    checks: dict[str, tuple[Callable[[Any], bool], str]] = {
-        "name": (lambda v: isinstance(v, str) and v != "", "text"),
-        "description": (lambda v: isinstance(v, str), "text"),
-        "fit": (lambda v: v in get_args(FitKind), "ols or gls"),
-        "forms": (_is_forms, 'a list of "constant", "linear"'),
-        "alpha": (lambda v: _is_number(v) and 0.0 < v < 1.0, "a number between 0 and 1"),
-        "holm": (lambda v: isinstance(v, bool), "true or false"),
-        "min_r_squared": (lambda v: _is_number(v) and 0.0 <= v <= 1.0, "a number from 0 to 1"),
-        "min_parallax_gain": (lambda v: _is_number(v) and 0.0 <= v < 1.0, "a share from 0 to 1"),
-    }
-    for key, (accepts, expected) in checks.items():
-        if key in values and not accepts(values[key]):
-            findings.append(f"{key}: found {values[key]!r}, expected {expected}")
-        elif key not in values and key in ("fit", "forms", "alpha"):
-            findings.append(f"{key}: is missing, expected {expected}")
-    return findings
-
-
-def _is_forms(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and 0 < len(value) == len(set(map(str, value)))
-        and all(form in ("constant", "linear") for form in value)
-    )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    rules = open_toml(content, source).read_or_raise(RuleSet, RuleFormatError)
+    return replace(rules, name=rules.name or name)

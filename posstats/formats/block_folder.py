@@ -14,7 +14,7 @@ from posstats.arrays import Floats
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
 from posstats.errors import BlockFormatError, GeometryError
-from posstats.formats.block_toml import BlockSettings, parse_settings
+from posstats.formats.block_toml import FILE, BlockSettings, parse_settings
 from posstats.formats.block_warnings import block_warnings, settings_warnings, time_warnings
 from posstats.formats.block_writing import write_block, write_orientations
 from posstats.formats.convention import Convention
@@ -27,7 +27,6 @@ from posstats.formats.orientation_files import (
 )
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
 from posstats.formats.text_table import FileTable, read_bytes, read_table, sha256
-from posstats.formats.toml_section import FILE
 
 __all__ = ["read_block", "write_block", "write_orientations"]
 

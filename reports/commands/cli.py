@@ -14,6 +14,7 @@ from posstats.settings import (
     ControlSubset,
     DriftScope,
     FrameChoice,
+    Language,
     RuleSetName,
     Scope,
     SelfCalibration,
@@ -158,6 +159,13 @@ def analyse(
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
+@click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of the report; adjustment.json stays English.",
+)
 @no_pdf_option("report")
 @clear_errors
 def adjust(
@@ -172,6 +180,7 @@ def adjust(
     drop_insignificant: bool,
     calibration: Path | None,
     robust: bool,
+    language: Language,
     no_pdf: bool,
 ) -> None:
     """Adjust the block folder BLOCK as a bundle with its POS, and write a report.
@@ -197,7 +206,9 @@ def adjust(
         robust=robust,
     )
     target = out or default_out(block)
-    for line in adjust_folder(block, target, settings, calibration, pdf=not no_pdf):
+    for line in adjust_folder(
+        block, target, settings, calibration, language=language, pdf=not no_pdf
+    ):
         click.echo(line)
 
 

@@ -2,21 +2,28 @@
 
 from collections.abc import Callable, Iterator
 from functools import wraps
+from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import ParamSpec, TypeVar, get_args
 
 import click
 
 from posstats.errors import PosstatsError
 from posstats.settings import PAPER_SEED
 
-_Command = TypeVar("_Command", bound=Callable[..., Any])
+_Command = TypeVar("_Command", bound=Callable[..., object])
+_Given = ParamSpec("_Given")
 
 
 class _Folder(click.Path):
     """A path that is not empty: an empty one would be the working directory."""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self,
+        value: str | PathLike[str],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> str | bytes | PathLike[str]:
         if value == "":
             self.fail("is empty; . is the working directory", param, ctx)
         return super().convert(value, param, ctx)
@@ -25,12 +32,12 @@ class _Folder(click.Path):
 FOLDER = _Folder(path_type=Path)
 
 
-def choice(literal: Any) -> click.Choice[str]:
+def choice(literal: object) -> click.Choice[str]:
     """The choices of a Literal type of `posstats.settings`."""
     return click.Choice(get_args(literal))
 
 
-def named(literal: Any) -> str:
+def named(literal: object) -> str:
     """How help names what is one of a Literal type's values, or a file."""
     return "|".join((*get_args(literal), "FILE"))
 
@@ -56,11 +63,11 @@ def no_pdf_option(document: str) -> Callable[[_Command], _Command]:
     return click.option("--no-pdf", is_flag=True, help=f"Write the {document} as HTML only.")
 
 
-def clear_errors(command: Callable[..., None]) -> Callable[..., None]:
+def clear_errors(command: Callable[_Given, None]) -> Callable[_Given, None]:
     """Turn the package's errors and the system's into one message and exit code 1."""
 
     @wraps(command)
-    def run(*args: Any, **kwargs: Any) -> None:
+    def run(*args: _Given.args, **kwargs: _Given.kwargs) -> None:
         try:
             command(*args, **kwargs)
         except PosstatsError as error:

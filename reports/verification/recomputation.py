@@ -7,7 +7,7 @@ from posstats.analysis.results import results
 from posstats.analysis.steps import analyse
 from posstats.contract.results import AnalysisSettings, Results
 from posstats.formats.block_folder import read_block
-from posstats.formats.toml_section import FILE
+from posstats.formats.block_toml import FILE
 from posstats.settings import Settings
 
 

@@ -194,7 +194,7 @@ def test_a_file_gives_back_what_was_written(tmp_path, lever_arm_m):
         ("boresight_roll", "boresight_pitch", "parameters"),
         ("n_images = 24", "n_images = 0", "whole number"),
         ("covariance = [[", "covariance = [[-", "covariance matrix"),
-        ("n_images = 24", "n_images 24", "not valid TOML"),
+        ("n_images = 24", "n_images 24", "no valid TOML"),
     ],
 )
 def test_a_wrong_file_is_refused_by_name(tmp_path, old, new, finding):

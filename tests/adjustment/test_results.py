@@ -45,22 +45,22 @@ def measured_and_computed(adjustment):
 
 
 def test_pos_minus_adjusted_has_the_sign_and_size_of_the_errors_put_in(values, adjusted):
-    rows = {row["element"]: row for row in values["orientations"]}
+    rows = {row.element: row for row in values.orientations}
     for name, error in zip(("omega", "phi", "kappa"), ERROR_RAD, strict=True):
-        assert rows[name]["pos_mean"] == pytest.approx(error, abs=2e-3)
-        assert rows[name]["pos_rms"] == pytest.approx(abs(error), abs=2e-3)
+        assert rows[name].pos_mean == pytest.approx(error, abs=2e-3)
+        assert rows[name].pos_rms == pytest.approx(abs(error), abs=2e-3)
     moved = adjusted.block.orientations.position_m - adjusted.orientations.position_m
     for axis, name in enumerate("xyz"):
-        assert rows[name]["pos_mean"] == pytest.approx(moved[:, axis].mean())
-        assert rows[name]["pos_rms"] == pytest.approx(np.sqrt((moved[:, axis] ** 2).mean()))
+        assert rows[name].pos_mean == pytest.approx(moved[:, axis].mean())
+        assert rows[name].pos_rms == pytest.approx(np.sqrt((moved[:, axis] ** 2).mean()))
 
 
 def test_standard_deviations_of_elements_are_those_of_their_own_columns(values, adjusted):
     sigma = np.hstack([adjusted.orientations.sigma_angles_rad,
                        adjusted.orientations.sigma_position_m])  # fmt: skip
-    for row, column in zip(values["orientations"], sigma.T, strict=True):
-        assert row["median_sigma"] == pytest.approx(np.median(column))
-        assert row["max_sigma"] == pytest.approx(column.max())
+    for row, column in zip(values.orientations, sigma.T, strict=True):
+        assert row.median_sigma == pytest.approx(np.median(column))
+        assert row.max_sigma == pytest.approx(column.max())
 
 
 def test_cells_hold_mean_residuals_measured_minus_computed(values, adjusted):
@@ -68,22 +68,22 @@ def test_cells_hold_mean_residuals_measured_minus_computed(values, adjusted):
     measured, computed = measured_and_computed(adjusted)
     residual = measured - computed
     size = 6000.0 / 12
-    for row in values["image_residuals"]:
-        place = np.array([row["x_px"], row["y_px"]])
+    for row in values.image_residuals:
+        place = np.array([row.x_px, row.y_px])
         inside = (np.abs(measured - place) < size / 2).all(axis=1)
-        assert row["n"] == inside.sum()
+        assert row.n == inside.sum()
         mean = residual[inside].mean(axis=0)
-        assert (row["dx_px"], row["dy_px"]) == pytest.approx(tuple(mean), abs=1e-6)
+        assert (row.dx_px, row.dy_px) == pytest.approx(tuple(mean), abs=1e-6)
         rms = np.sqrt((residual[inside] ** 2).mean())
-        assert row["rms_px"] == pytest.approx(rms, abs=1e-6)
+        assert row.rms_px == pytest.approx(rms, abs=1e-6)
 
 
 def test_rms_of_image_coordinates_is_that_of_all_components(values, adjusted):
     measured, computed = measured_and_computed(adjusted)
     residual = measured - computed
-    group = next(row for row in values["groups"] if row["group"] == "image")
-    assert group["n"] == residual.size
-    assert group["rms"] == pytest.approx(np.sqrt((residual**2).mean()), rel=1e-6)
+    group = next(row for row in values.groups if row.group == "image")
+    assert group.n == residual.size
+    assert group.rms == pytest.approx(np.sqrt((residual**2).mean()), rel=1e-6)
 
 
 def test_control_points_are_adjusted_minus_given_with_the_sign_of_what_the_others_say():
@@ -99,9 +99,9 @@ def test_control_points_are_adjusted_minus_given_with_the_sign_of_what_the_other
     found = adjust_block(
         replace(block, ground_points=points), AdjustmentSettings(control="all", robust=False)
     )
-    rows = {row["point"]: row for row in adjustment_results(found)["control_points"]}
+    rows = {row.point: row for row in adjustment_results(found).control_points}
     wrong = rows[block.tie_points.point_id[chosen[2]]]
-    assert wrong["dx_m"] == pytest.approx(-3.0, abs=0.7)
-    assert wrong["dy_m"] == pytest.approx(0.0, abs=0.7)
-    assert wrong["dz_m"] == pytest.approx(-2.0, abs=0.7)
-    assert wrong["x_m"] == pytest.approx(given[2, 0])
+    assert wrong.dx_m == pytest.approx(-3.0, abs=0.7)
+    assert wrong.dy_m == pytest.approx(0.0, abs=0.7)
+    assert wrong.dz_m == pytest.approx(-2.0, abs=0.7)
+    assert wrong.x_m == pytest.approx(given[2, 0])

@@ -11,7 +11,9 @@ from small_scenario import GOOD_POINTS, OMEGA_CONSTANT_RAD, OMEGA_DRIFT_RAD_PER_
 from posstats import read_block
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
-from posstats.contract.files import to_json
+from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.files import from_json, to_json
+from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
 from posstats.geometry.ground.intersection import intersect
@@ -144,12 +146,12 @@ def test_a_block_without_additional_parameters_is_adjusted(block):
     )
     plain = adjust_block(right, AdjustmentSettings(control="all", drift="none"))
     assert plain.parameters == ()
-    assert adjustment_results(plain)["correlations"] == []
+    assert adjustment_results(plain).correlations == ()
 
 
 def test_a_systematic_error_without_parameters_is_called_by_its_name(tiny):
-    values = adjustment_results(adjust_block(tiny, AdjustmentSettings("all", drift="none")))
-    assert any("IMU angles of 15 of 15 images contradict" in each for each in values["warnings"])
+    results = adjustment_results(adjust_block(tiny, AdjustmentSettings("all", drift="none")))
+    assert Notice(code="systematic_imu", values={"n": 15, "n_images": 15}) in results.notices
 
 
 def test_insignificant_parameters_are_dropped_on_request(block):
@@ -174,7 +176,9 @@ def test_an_unknown_setting_is_refused():
 
 
 def test_results_are_the_schema_in_plain_values(corners):
-    values = json.loads(to_json(adjustment_results(corners, created="2020-01-01")))
+    text = to_json(adjustment_results(corners, created="2020-01-01"))
+    assert to_json(from_json(text, AdjustmentResults, "adjustment.json")) == text
+    values = json.loads(text)
     assert values["schema"] == "posstats-adjustment/1"
     assert values["converged"] is True
     assert {row["group"] for row in values["groups"]} >= {"image", "gnss", "imu", "control"}
@@ -231,14 +235,14 @@ def test_an_unknown_camera_is_found_and_told_in_the_terms_of_the_block(block):
         block, cameras=(stated,), tie_points=replace(ties, xy_px=ties.xy_px - [6.0, 4.0])
     )
     adjustment = adjust_block(wrong, AdjustmentSettings(control="all", camera=True))
-    values = adjustment_results(adjustment)
-    (camera,) = values["cameras"]
+    results = adjustment_results(adjustment)
+    (camera,) = results.cameras
     sigma = {name: parameter(adjustment, name).sigma for name in ("camera_c", "camera_x0")}
     assert sigma["camera_c"] < 3.0
     assert sigma["camera_x0"] < 1.0
-    assert abs(camera["principal_distance_px"] - true.principal_distance_px) < (
+    assert abs(camera.principal_distance_px - true.principal_distance_px) < (
         4.0 * sigma["camera_c"]
     )
-    found = np.array(camera["principal_point_px"]) - true.principal_point_px
+    found = np.array(camera.principal_point_px) - true.principal_point_px
     assert (np.abs(found) < 4.0 * sigma["camera_x0"]).all()
-    assert values["settings"]["camera"]
+    assert results.settings.camera

@@ -15,9 +15,11 @@ from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
+from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
 from posstats.reports.adjustment.verdict import paragraph
+from posstats.reports.adjustment.words import words_in
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
 
@@ -30,8 +32,9 @@ def test_no_control_and_no_pos_weights_is_a_datum_defect(block):
             block.orientations, sigma_position_m=nothing, sigma_angles_rad=nothing
         ),
     )
-    with pytest.raises(PosstatsError, match="datum"):
+    with pytest.raises(UndeterminedBlockError, match="open_datum") as caught:
         adjust_block(loose, AdjustmentSettings(control="none", drift="none"))
+    assert [each.reason.code for each in caught.value.defects] == ["open_datum"]
 
 
 def test_points_on_a_line_leave_angles_to_the_imu(block):
@@ -58,9 +61,9 @@ def test_a_control_point_off_by_100_m_is_named(block):
     position[list(surveyed.point).index("C3"), 0] += 100.0
     off = replace(block, ground_points=replace(surveyed, position_m=position))
     found = adjust_block(off, AdjustmentSettings(control="all"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "control"]
-    assert [row["point"] for row in named] == ["C3"]
-    assert named[0]["size"][0] == pytest.approx(100.0, abs=2.0)
+    named = [row for row in adjustment_results(found).blunders if row.kind == "control"]
+    assert [row.point for row in named] == ["C3"]
+    assert named[0].size[0] == pytest.approx(100.0, abs=2.0)
     assert found.overall.p > 1e-4
 
 
@@ -71,8 +74,8 @@ def test_a_wrong_control_point_is_no_witness_against_priors(block, control, axis
     position[list(surveyed.point).index("C3"), axis] += 100.0
     off = replace(block, ground_points=replace(surveyed, position_m=position))
     found = adjust_block(off, AdjustmentSettings(control=control, drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "control"]
-    assert [row["point"] for row in named] == ["C3"]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "control"]
+    assert [row.point for row in named] == ["C3"]
     for each in found.parameters:
         if each.name.startswith("gnss") and each.name.endswith("shift"):
             assert abs(each.value) < 1.0
@@ -86,9 +89,11 @@ def test_a_single_control_point_against_the_priors_is_warned_of(block):
 
     def warned(block):
         found = adjust_block(block, AdjustmentSettings(control=("C3",)))
-        return [w for w in adjustment_results(found)["warnings"] if "control point C3" in w]
+        return [n.values for n in adjustment_results(found).notices if n.code == "lone_control"]
 
-    assert "gnss_x_shift" in "".join(warned(off))
+    (told,) = warned(off)
+    assert told["point"] == "C3"
+    assert "gnss_x_shift" in told["parameters"]
     assert warned(block) == []
 
 
@@ -100,8 +105,8 @@ def test_an_image_with_swapped_axes_is_named_and_spoils_no_check_point(block):
     xy[rays] = xy[rays][:, ::-1]
     swapped = replace(block, tie_points=replace(ties, xy_px=xy))
     found = adjust_block(swapped, AdjustmentSettings(control="corners", drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
-    assert [row["image"] for row in named] == [block.orientations.image[image]]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "axes"]
+    assert [row.image for row in named] == [block.orientations.image[image]]
     assert np.nanmax(np.abs(found.check_points.difference_m)) < 5.0
 
 
@@ -114,8 +119,8 @@ def test_an_image_mirrored_along_the_flight_shows_against_the_next_strip(block):
     xy[rays, along] *= -1.0
     reversed_ = replace(block, tie_points=replace(ties, xy_px=xy))
     found = adjust_block(reversed_, AdjustmentSettings(control="corners", drift="strip"))
-    named = [row for row in adjustment_results(found)["blunders"] if row["kind"] == "axes"]
-    assert [row["image"] for row in named] == [block.orientations.image[image]]
+    named = [row for row in adjustment_results(found).blunders if row.kind == "axes"]
+    assert [row.image for row in named] == [block.orientations.image[image]]
 
 
 @pytest.mark.parametrize("signs", [(-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
@@ -219,10 +224,13 @@ def test_an_observation_that_the_block_needs_is_said_to_be_doubtful(tiny):
     found = adjust_block(tiny, AdjustmentSettings("all"))
     ray = Blunder("image", 0, 9.0, np.array([1.0, 0.0]), "px")
     snooping = replace(found.snooping, held=ray, complete=False)
-    values = adjustment_results(replace(found, snooping=snooping))
-    assert any("is not determined: it, or one" in each for each in values["warnings"])
-    assert not any("largest number" in each for each in values["warnings"])
-    assert "kept as the block needs it: image ray of point" in paragraph(values)
+    results = adjustment_results(replace(found, snooping=snooping))
+    codes = [each.code for each in results.notices]
+    assert "snooping_held" in codes
+    assert "snooping_stopped" not in codes
+    words, (held,) = words_in("en"), [row for row in results.blunders if not row.taken_out]
+    named = words.of("named", "image", image=held.image, point=held.point)
+    assert words.text("blunders.held", what=named) in paragraph(words, results)
 
 
 @pytest.mark.parametrize(

@@ -233,8 +233,14 @@ def test_rules_from_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (GOOD + "min_rsquared = 0.8", "unknown key 'min_rsquared', expected min_r_squared"),
-        (GOOD.replace("0.05", "5"), "alpha: found 5, expected a number between 0 and 1"),
+        (
+            GOOD + "min_rsquared = 0.8",
+            "mine.toml:4, min_rsquared: found an unknown key, expected min_r_squared?",
+        ),
+        (
+            GOOD.replace("0.05", "5"),
+            "mine.toml:3, alpha: found 5, expected a number between 0 and 1",
+        ),
         (GOOD.replace("0.05", "true"), "alpha: found True"),
         (GOOD.replace("0.05", "nan"), "alpha: found nan"),
         (GOOD.replace('"ols"', '"wls"'), "fit: found 'wls', expected ols or gls"),
@@ -246,8 +252,8 @@ def test_rules_from_a_file(tmp_path):
         (GOOD + 'holm = "yes"', "holm: found 'yes', expected true or false"),
         (GOOD + "min_parallax_gain = 5", "min_parallax_gain: found 5"),
         (GOOD + "name = 3", "name: found 3, expected text"),
-        ("", "fit: is missing"),
-        ("fit = ", "not a TOML file"),
+        ("", "mine.toml, fit: found nothing"),
+        ("fit = ", "mine.toml: found no valid TOML"),
     ],
 )
 def test_bad_rule_files_are_named_with_their_fault(tmp_path, text, words):
@@ -263,7 +269,7 @@ def test_bad_rule_files_are_named_with_their_fault(tmp_path, text, words):
 def test_rule_file_that_is_not_text(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(RuleFormatError, match="not a TOML file"):
+    with pytest.raises(RuleFormatError, match=r"mine\.toml:1: found a file that is not UTF-8"):
         load_rules(path)
 
 

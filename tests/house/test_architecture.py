@@ -16,7 +16,7 @@ FLOORS = {
     "posstats.arrays": 0,
     "posstats.settings": 1,
     "posstats.contract": 2,
-    "posstats.statistics": 1,
+    "posstats.statistics": 3,
     "posstats.numerics.kernels": 1,
     "posstats.numerics.solvers": 2,
     "posstats.numerics.bundle": 3,

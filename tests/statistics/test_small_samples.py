@@ -100,3 +100,18 @@ def test_limits_of_an_rmse_are_those_of_the_chi_square_distribution():
     low, high = (math.sqrt(square_sum / stats.chi2.ppf(q, 6)) for q in (0.975, 0.025))
     assert (found.low, found.high) == pytest.approx((low, high))
     assert low < found.rmse < high
+
+
+def test_degrees_of_freedom_of_few_shifted_points_are_those_of_one_component_written_out():
+    """s^2 of five values: tr SS = f / (f + 2) s^4, m'Sm = m^2 s^2 - tr SS / n; F = t / z widens."""
+    values = np.array([0.9, 1.6, 0.4, 1.2, 1.9])
+    n, f = 5, 4
+    mean, variance = values.mean(), values.var(ddof=1)
+    scatter = f / (f + 2) * variance**2
+    shift = mean**2 * variance - scatter / n
+    total = 2.0 * scatter + 4.0 * shift
+    plain = 2.0 * n * (values @ values / n) ** 2 / total - 2.0
+    assert plain > n
+    widening = stats.t.ppf(0.975, f * total / (4.0 * shift)) / stats.norm.ppf(0.975)
+    found = rmse_interval(values)
+    assert found.df == pytest.approx(plain / widening**2, rel=1e-9)

@@ -83,7 +83,8 @@ def arrows(svg: str, colour: str) -> list[tuple[np.ndarray, np.ndarray]]:
     The outline of a head goes beyond its corner by half a line, more where it is sharp.
     """
     found, ink = [], colour.lower()
-    paths = list(ET.fromstring(svg).iter("{http://www.w3.org/2000/svg}path"))  # noqa: S314 - drawn by us
+    drawn = ET.fromstring(svg)  # noqa: S314 - our own figure
+    paths = list(drawn.iter("{http://www.w3.org/2000/svg}path"))
     for shaft, head in pairwise(paths):
         looks = [path.get("style", "").lower() for path in (shaft, head)]
         is_shaft = "fill: none" in looks[0] and f"stroke: {ink}" in looks[0]
@@ -92,10 +93,9 @@ def arrows(svg: str, colour: str) -> list[tuple[np.ndarray, np.ndarray]]:
         one, corner, other = _places(head)[:3]
         along = corner - 0.5 * (one + other)
         sharpness = np.hypot(*(corner - one)) / (0.5 * np.hypot(*(other - one)))
-        width = float(re.search(r"stroke-width: ([\d.]+)", looks[1])[1])
-        found.append(
-            (_places(shaft)[0], corner + 0.5 * width * sharpness * along / np.hypot(*along))
-        )
+        width = re.search(r"stroke-width: ([\d.]+)", looks[1])  # 1 where not said
+        beyond = 0.5 * float(width[1] if width else 1.0) * sharpness
+        found.append((_places(shaft)[0], corner + beyond * along / np.hypot(*along)))
     return found
 
 

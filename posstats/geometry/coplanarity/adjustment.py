@@ -28,7 +28,7 @@ from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
 from posstats.numerics.solvers.dense import Propagation, mirrored, normals_factor, propagated
-from posstats.statistics.robust import (
+from posstats.numerics.solvers.robust import (
     SMALLEST_SCALE,
     huber_weights,
     kept_weights,

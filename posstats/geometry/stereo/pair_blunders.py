@@ -18,7 +18,7 @@ from posstats.geometry.stereo.pair_equations import (
 )
 from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
-from posstats.statistics.robust import TUKEY
+from posstats.numerics.solvers.robust import TUKEY
 
 _HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-1
 _HUBER = 0.3  # of the scale: nearly least absolute values, which blunders bend little

@@ -15,7 +15,7 @@ from posstats.errors import ConvergenceError, GeometryError
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
 from posstats.numerics.bundle.system import BundleSystem, Equations, State
 from posstats.numerics.solvers.arrow import SelectedInverse
-from posstats.statistics.robust import huber_weights, kept_weights, median_scale
+from posstats.numerics.solvers.robust import huber_weights, kept_weights, median_scale
 
 MAX_ITERATIONS = 100
 _SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together

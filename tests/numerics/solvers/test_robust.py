@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from posstats.statistics.robust import HUBER, REJECTION, huber_weights, kept_weights, median_scale
+from posstats.numerics.solvers.robust import (
+    HUBER,
+    REJECTION,
+    huber_weights,
+    kept_weights,
+    median_scale,
+)
 
 
 def test_the_scale_of_normal_residuals_is_their_standard_deviation():

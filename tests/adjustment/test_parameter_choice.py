@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dense_bundle import noisy_problem
 
-from posstats.adjustment.selection import select_parameters
+from posstats.adjustment.parameter_choice import select_parameters
 from posstats.adjustment.significance import parameter_tests
 from posstats.errors import UndeterminedError
 from posstats.numerics.bundle import adjust

@@ -1,0 +1,67 @@
+"""The words of the report on an adjustment."""
+
+from dataclasses import dataclass
+
+from posstats.contract.adjustment import AdditionalParameter, Element
+from posstats.contract.notice import Notice
+
+from ..document import format as fmt
+from ..document import words as document
+from ..document.catalogue import catalogue
+from .units import unit_of
+
+DOMAINS = ("document", "adjustment")
+_BLOCK = "block"
+
+
+@dataclass(frozen=True)
+class Words(document.Words):
+    """The catalogue of the report, with the names of parameters."""
+
+    def parameter(self, name: str) -> str:
+        """A parameter as it is called in a sentence: ``omega drift``, ``GNSS X shift``."""
+        source, _, rest = name.partition("_")
+        if source in ("gnss", "imu"):
+            of, _, kind = rest.partition("_")
+            return self.text(f"parameter.{source}_{kind}", of=self.of("component", of))
+        if name == "camera_c":
+            return self.text("parameter.distance")
+        of = rest.rpartition("_")[2]
+        return self.text(f"parameter.{source}", of=self.known("component", of))
+
+    def element(self, name: Element) -> str:
+        """An element of an orientation."""
+        return self.of("component", name)
+
+    def scope(self, scope: str) -> str:
+        """``block``, or the strip in words."""
+        return self.text("scope.block") if scope == _BLOCK else self.text("scope.strip", id=scope)
+
+    def yes(self, value: bool) -> str:
+        """Yes or no."""
+        return self.text("answer.yes" if value else "answer.no")
+
+    def value(self, parameter: AdditionalParameter) -> str:
+        """A parameter's value with its unit; drifts of angles in rad/s and degrees per hour."""
+        if parameter.unit == "rad/s":
+            return fmt.rate(parameter.value)
+        unit = unit_of(parameter.unit)
+        return fmt.with_unit(unit.scaled(parameter.value), unit.name)
+
+    def notice(self, said: Notice) -> str:
+        """A notice in words; control points are counted, groups of observations named."""
+        n_control, groups = said.values.get("n_control"), said.values.get("groups")
+        if isinstance(n_control, int):
+            return self.of("notice", said.code, control=self._control(n_control))
+        if isinstance(groups, tuple):
+            named = self.text("list.between").join(self.of("weight", str(g)) for g in groups)
+            return self.of("notice", said.code, groups=named)
+        return super().notice(said)
+
+    def _control(self, n: int) -> str:
+        return self.counted("control.count", n) if n else self.text("control.no")
+
+
+def words_in(language: str) -> Words:
+    """The words in a language."""
+    return Words(catalogue(language, *DOMAINS))
