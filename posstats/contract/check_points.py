@@ -45,10 +45,7 @@ class _OfAnOrientation:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckPointDifference:
-    """A check point: computed minus given, translation kept, crs axes.
-
-    A point that cannot be intersected has no differences.
-    """
+    """A check point and its difference from an orientation, whichever that is."""
 
     point: Annotated[str, about("id of the point")]
     n_rays: Annotated[int, about("images that show it")]
@@ -73,4 +70,7 @@ class CheckPointDifference:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckPointResidual(CheckPointDifference, _OfAnOrientation):
-    """A check point by one orientation."""
+    """A check point by one orientation: computed minus given, translation kept, crs axes.
+
+    A point that cannot be intersected has no differences.
+    """

@@ -207,17 +207,17 @@ def test_each_noise_has_a_stream_of_its_own():
 @pytest.mark.parametrize(
     ("tables", "message"),
     [
-        ({"terrain": {"relief_m": 3000, "wavelength_m": 500}}, "terrain rises above the flight"),
+        ({"terrain": {"relief_m": 3000, "wavelength_m": 500}}, "above the flight"),
         ({"flight": {"tilt_rad": 0.5, "images_per_strip": 50}}, "towards the horizon"),
         ({"tie_points": {"per_model": 1e8}}, "lower .tie_points. per_model"),
-        ({"flight": {"n_strips": 1, "images_per_strip": 1}}, "no tie point lies in two images"),
-        ({"block": {"crs": "EPSG:0", "origin_m": [1, 1]}}, "does not know the crs"),
-        ({"block": {"crs": "EPSG:4326", "origin_m": [5, 43]}}, "is no map grid"),
-        ({"block": {"crs": "EPSG:4326", "origin_m": [5, 43], "frame": "grid"}}, "is no map grid"),
+        ({"flight": {"n_strips": 1, "images_per_strip": 1}}, "in two images"),
+        ({"block": {"crs": "EPSG:0", "origin_m": [1, 1]}}, "know the crs"),
+        ({"block": {"crs": "EPSG:4326", "origin_m": [5, 43]}}, "no map grid"),
+        ({"block": {"crs": "EPSG:4326", "origin_m": [5, 43], "frame": "grid"}}, "no map grid"),
         ({"block": UTM_33 | {"origin_m": [5e7, 5e6]}}, "is outside EPSG:32633"),
         (
             {"camera": {"distortion": {"model": "radial", "k1": -5.0}}},
-            "distortion cannot be inverted",
+            "cannot be inverted",
         ),
     ],
 )
