@@ -6,8 +6,8 @@ from typing import get_args
 
 import click
 
+from posstats.contract.choices import JudgedOrientation, Language, TerrainKind
 from posstats.errors import PosstatsError
-from posstats.settings import JudgedOrientation, Language, TerrainKind
 
 from ..output import timestamp
 from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
