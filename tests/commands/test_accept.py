@@ -249,9 +249,9 @@ def test_what_cannot_be_judged_is_said(analysed, tmp_path, options, message):
     [
         (b"\x00\xff", "results.json is no JSON"),
         (b"{", "results.json is no JSON"),
-        (b"[]", "results.json has schema None"),
-        (b'{"schema": "posstats-adjustment/1"}', "this version reads 'posstats-results/1'"),
-        (b'{"schema": "posstats-results/1"}', "missing required field"),
+        (b"[]", "results.json has schema null"),
+        (b'{"schema": "posstats-adjustment/1"}', "this version reads posstats-results/1"),
+        (b'{"schema": "posstats-results/1"}', "results.json, posstats_version: found nothing"),
         (b"[" * 100_000, "results.json is no JSON"),
     ],
 )
@@ -274,7 +274,7 @@ def test_a_value_that_is_no_number_is_refused_without_a_traceback(analysed, tmp_
     path.write_text(json.dumps(values), encoding="utf-8")
     done = run("accept", path, "--profile", "jrc", "--gsd", "1m", "--out", tmp_path / "out")
     assert done.exit_code == 1
-    assert "$.check_point_residuals[0].dx_m" in done.output
+    assert f"results.json, check_point_residuals[0].dx_m: found {json.dumps(value)}" in done.output
     assert not (tmp_path / "out").exists()
 
 

@@ -197,7 +197,7 @@ def test_a_geoid_grid_beside_the_block_turns_heights_ellipsoidal(tmp_path) -> No
     block = read_block(folder)
     assert np.allclose(block.orientations.position_m[:, 2] - ellipsoidal[:, 2], 50.0, atol=1e-3)
     assert "geoid.gtx" in dict(block.inputs)
-    assert block.warnings == ()
+    assert block.notices == ()
     elsewhere = header[:8] + struct.pack(">d", 90.0) + header[16:] + bytes(100)
     (folder / "elsewhere.gtx").write_bytes(elsewhere)
     edit(folder, "block.toml", ("geoid.gtx", "elsewhere.gtx"))

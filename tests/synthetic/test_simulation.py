@@ -115,7 +115,7 @@ def test_a_simulated_block_is_read_back_as_it_was_written(frame, tmp_path):
     write_block(block, tmp_path)
     read = read_block(tmp_path)
     assert read.simulated
-    assert read.warnings == ()
+    assert read.notices == ()
     assert list(read.orientations.image) == list(block.orientations.image)
     assert list(read.tie_points.point_id) == list(block.tie_points.point_id)
     np.testing.assert_allclose(read.tie_points.xy_px, block.tie_points.xy_px, atol=1e-7)
@@ -229,9 +229,10 @@ def test_an_impossible_block_is_refused_in_words(tables, message):
 def test_short_strips_and_unseen_points_are_noted():
     flight = {"n_strips": None, "images_per_strip": [1, 3], "forward_overlap": 0.3}
     spec = {"n": 60, "distribution": "grid"}
-    notes = simulate(scenario_with(flight=flight, check_points=spec)).warnings
-    assert any("strip" in note and "one image" in note for note in notes)
-    assert any("than two images: C" in note for note in notes)
+    notes = simulate(scenario_with(flight=flight, check_points=spec)).notices
+    found = {each.code: each.values for each in notes}
+    assert "strips_of_one_image" in found
+    assert found["ground_points_with_few_rays"]["ids"][0].startswith("C")
 
 
 def test_area_1_has_the_numbers_of_the_paper(area1):
@@ -241,7 +242,7 @@ def test_area_1_has_the_numbers_of_the_paper(area1):
     assert len(area1.tie_points.point_id) == pytest.approx(111_000, rel=0.01)
     assert len(area1.tie_points) == pytest.approx(380_000, rel=0.01)
     assert models.pairs.n_points.mean() == pytest.approx(757, rel=0.01)
-    assert area1.warnings == ()
+    assert area1.notices == ()
 
 
 def test_area_1_has_the_parallax_of_the_paper(area1):
