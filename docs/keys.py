@@ -15,7 +15,11 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 PAGES = Path(__file__).parent
-DOCUMENTS = {"results": "Results", "adjustment": "AdjustmentResults"}
+DOCUMENTS = {
+    "acceptance": "Acceptance",
+    "adjustment": "AdjustmentResults",
+    "results": "Results",
+}
 MARKED = re.compile(r"(<!-- keys: (\w+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 _PLAIN = {str: "text", float: "number", int: "whole number", bool: "`true`, `false`"}
 

@@ -55,7 +55,7 @@ class StatedProduct:
     class_v_m: Annotated[float | None, about("accuracy class, vertical")] = None
     gsd_m: Annotated[float | None, about("ground sampling distance")] = None
     map_scale: Annotated[float | None, about("denominator of the map scale")] = None
-    terrain: Annotated[TerrainKind | None, about("`flat` or `mountain`")] = None
+    terrain: Annotated[TerrainKind | None, about("kind of terrain")] = None
     lot_size: Annotated[int | None, about("units delivered together")] = None
     sample_size: Annotated[int | None, about("those of them inspected")] = None
     survey_sigma_h_m: Annotated[
@@ -98,7 +98,7 @@ class JudgedRequirement:
     limit_formula: Annotated[str, about("the limit as the profile has it")]
     unit: Annotated[Unit, about("of found value, limit and margin")]
     margin: Annotated[float | None, about("what is left to the limit, negative beyond it")] = None
-    verdict: Annotated[Judgement, about("`pass`, `fail`, `not assessed`")]
+    verdict: Annotated[Judgement, about("on this requirement")]
     reason_code: Annotated[str, about("why")]
     reason_values: Annotated[Mapping[str, Value], about("what the reason says, as data")]
     low: Annotated[float | None, about("95 % interval of what was found, where known")] = None
@@ -115,7 +115,7 @@ class JudgedRequirement:
 class ChosenStatement:
     """The standard's own wording for a component: a template, and its numbers."""
 
-    component: Annotated[StatedComponent, about("`horizontal` or `vertical`")]
+    component: Annotated[StatedComponent, about("what it speaks of")]
     kind: Annotated[StatementKind, about("which of the standard's wordings")]
     template: Annotated[str, about("the wording")]
     class_m: Annotated[float | None, about("accuracy class")]
@@ -128,14 +128,14 @@ class QualityGrade:
     """The smallest score and its grade (GB/T 24356)."""
 
     score: Annotated[float | None, about("`null` if a basis of it is not met")]
-    grade: Annotated[Grade, about("`excellent`, `good`, `pass`, `fail`")]
+    grade: Annotated[Grade, about("of the score")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rmse:
     """Root mean square error of a component at the check points."""
 
-    component: Annotated[Component, about("`x`, `y`, `h`, `v`, `3d`")]
+    component: Annotated[Component, about("axis, horizontal, vertical, or in space")]
     iso_19157: Annotated[int | None, about("measure: 39, horizontal 47")]
     value_m: Annotated[float | None, about("RMSE")]
     low_m: Annotated[float | None, about("its 95 % interval")]
@@ -148,7 +148,7 @@ class Rmse:
 class MeanError:
     """Mean difference of a component; null hypothesis of the test: it is zero (Student)."""
 
-    component: Annotated[Axis, about("`x`, `y`, `z`")]
+    component: Annotated[Axis, about("axis of the crs")]
     iso_19157: Annotated[int, about("measure: 128")]
     value_m: Annotated[float | None, about("mean")]
     se_m: Annotated[float | None, about("its standard error")]
@@ -160,7 +160,7 @@ class MeanError:
 class PercentileError:
     """A circular or linear error."""
 
-    name: Annotated[PercentileName, about("`CE90`, `CE95`, `LE90`, `LE95`")]
+    name: Annotated[PercentileName, about("circular or linear, and its share in percent")]
     iso_19157: Annotated[int, about("measure: 44, 45, 35, 36")]
     value_m: Annotated[float | None, about("of the sample")]
     low_m: Annotated[float | None, about("its 95 % interval")]
@@ -185,7 +185,7 @@ class MeanShift:
 class Normality:
     """Shapiro-Wilk's test of a component; null hypothesis: its differences are normal."""
 
-    component: Annotated[Axis, about("`x`, `y`, `z`")]
+    component: Annotated[Axis, about("axis of the crs")]
     w: Annotated[float | None, about("statistic")]
     p: Annotated[float | None, about("small for other distributions")]
     reason: Annotated[str | None, about("why there is no test")] = None
@@ -195,7 +195,7 @@ class Normality:
 class LargestResidual:
     """Grubbs' test of a component; null hypothesis: its largest residual is of a normal sample."""
 
-    component: Annotated[Axis, about("`x`, `y`, `z`")]
+    component: Annotated[Axis, about("axis of the crs")]
     point: Annotated[str | None, about("id of the check point")]
     value_m: Annotated[float | None, about("difference minus mean")]
     p: Annotated[float | None, about("after Holm over the components")]
@@ -246,8 +246,8 @@ class Acceptance:
     posstats_version: Annotated[str, about("version of the package")]
     versions: Annotated[dict[str, str], about("Python and the main libraries")]
     created: Annotated[str, about("ISO 8601 time")]
-    language: Annotated[Language, about("`en` or `zh`: of the texts `reason` and `statement`")]
-    verdict: Annotated[Verdict, about("`accepted`, `rejected`, `not assessable`")]
+    language: Annotated[Language, about("of the texts `reason` and `statement`")]
+    verdict: Annotated[Verdict, about("on the product")]
     orientation: Annotated[JudgedOrientation, about("what was assessed")]
     orientation_reason: Annotated[
         Notice, about("why: `code` is `asked`, or the orientation's name")

@@ -15,7 +15,7 @@ from .units import Lengths
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip
-DOMAINS = ("document", "acceptance")
+DOMAINS = ("document", "notices", "acceptance")
 NAMED = 3  # requirements named in the verdict
 IN_A_LINE = ("class_h_m", "class_v_m", "map_scale", "gsd_m", "terrain")
 
@@ -153,8 +153,9 @@ def _counted(n: int | None) -> str | None:
 def _put(words: Words, name: str, value: Value) -> str:
     """A value of a reason as text: codes by their family, numbers by what they are."""
     if isinstance(value, str):
-        family = {"quantity": "quantity", "orientation": "orientation", "name": "product_name"}
-        return words.known(family[name], value) if name in family else value
+        if name == "name":
+            return words.known("product_name", value)
+        return words.known(name, value) if name in {"quantity", "orientation"} else value
     if isinstance(value, float):
         return fmt.fixed(value, 2) if name == "ratio" else fmt.number(value)
     return fmt.MISSING if value is None else str(value)

@@ -4,27 +4,29 @@ import io
 from dataclasses import replace
 
 import pikepdf
-from archive_documents import (
-    STEPS,
-)
+from archive_documents import STEPS
 
-from posstats.reports.verification import words
-from posstats.reports.verification.words import Answer, Standing
+from posstats.contract.notice import Notice
+from posstats.reports.verification.answers import Answer, Question, Standing
 
-INTACT = words.intact_question("the signature")
-
-
-IN_FORCE = words.certificate_question("the signature")
-
-
-TRUSTED = words.trust_question("the signature")
-
-
+INTACT = Question("intact")
+IN_FORCE = Question("in_force")
+TRUSTED = Question("signer_trusted")
 OTHER = replace(STEPS, layout="posstats 9, WeasyPrint 99", numbers={"posstats": "9"})
 
 
-def failures(answers: dict[str, Answer]) -> dict[str, str]:
-    return {q: each.text for q, each in answers.items() if each.standing is Standing.FAIL}
+def failures(answers: dict[Question, Answer]) -> dict[Question, tuple[Notice, ...]]:
+    return {q: each.said for q, each in answers.items() if each.standing is Standing.FAIL}
+
+
+def codes(said: tuple[Notice, ...]) -> set[str]:
+    return {each.code for each in said}
+
+
+def reason(said: tuple[Notice, ...]) -> str:
+    """What an error says that is the only part of an answer."""
+    (only,) = said
+    return str(only.values["reason"])
 
 
 def changed(data: bytes, at: int) -> bytes:

@@ -16,8 +16,8 @@ from archive_documents import (
 
 from posstats.reports.archive.signing import sign
 from posstats.reports.verification import pages as verification_pages
+from posstats.reports.verification.answers import Answer, Question
 from posstats.reports.verification.questions import holds, verify
-from posstats.reports.verification.words import Answer
 
 
 @pytest.fixture(scope="session")
@@ -42,7 +42,7 @@ def ask(tmp_path, monkeypatch):
     """Verify bytes: the answers by question."""
     monkeypatch.setattr(verification_pages, "render_archive", remembering)
 
-    def run(data: bytes, steps=STEPS, now=NOW, **options) -> dict[str, Answer]:
+    def run(data: bytes, steps=STEPS, now=NOW, **options) -> dict[Question, Answer]:
         path = tmp_path / "asked.pdf"
         path.write_bytes(data)
         answers = list(verify(path, steps, now=now, **options))

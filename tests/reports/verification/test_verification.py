@@ -1,10 +1,10 @@
 """`posstats verify` finds every change of a document."""
 
-import re
 import sys
+from dataclasses import replace
 
 import pytest
-from answers import IN_FORCE, INTACT, TRUSTED, changed, failures, rewritten
+from answers import IN_FORCE, INTACT, TRUSTED, changed, codes, failures, reason, rewritten
 from archive_documents import (
     NOW,
     certificate,
@@ -15,43 +15,54 @@ from archive_documents import (
 )
 
 from posstats.reports.archive.signing import sign
-from posstats.reports.verification import words
+from posstats.reports.verification.answers import (
+    APPENDED,
+    ASSESSMENT,
+    FILES,
+    PAGES,
+    READABLE,
+    RECOMPUTED,
+    Question,
+    Standing,
+    said,
+)
 from posstats.reports.verification.signature import read_trust
-from posstats.reports.verification.words import Standing
 
 
 def test_an_unsigned_document_is_said_to_be_unsigned_and_judged_on_the_rest(ask, archive, inputs):
     answers = ask(archive, inputs=inputs)
     assert ask.holds
-    assert [each.standing.value for each in answers.values()] == [
-        *("PASS", "NOT SIGNED", "PASS", "PASS", "PASS", "PASS", "PASS", "PASS")
+    assert [each.standing for each in answers.values()] == [
+        *("pass", "not_signed", "pass", "pass", "pass", "pass", "pass", "pass")
     ]
-    assert answers[words.PAGES].text == words.SAME_BYTES
+    assert answers[PAGES].said == (said("same_bytes"),)
 
 
 def test_an_unsigned_document_needs_no_pyhanko(ask, archive, signed, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyhanko.sign", None)
     ask(archive)
     assert ask.holds
-    assert "posstats[sign]" in failures(ask(signed))[INTACT]
+    assert "posstats[sign]" in reason(failures(ask(signed))[INTACT])
 
 
 def test_a_signed_document_passes_and_names_its_signer(ask, signed, inputs):
     answers = ask(signed, inputs=inputs)
     assert ask.holds
-    assert "over the whole file, by Common Name: Example Survey Ltd" in answers[INTACT].text
+    signer = "Common Name: Example Survey Ltd"
+    assert answers[INTACT].said == (said("signed_whole", signer=signer),)
     assert answers[TRUSTED].standing is Standing.NOT_ASKED
-    assert "self-signed" in answers[TRUSTED].text
-    assert answers[words.APPENDED].text == words.ONLY_SIGNATURES
+    assert answers[TRUSTED].said == (said("no_anchor", signer=signer, issuer=None),)
+    assert answers[APPENDED].said == (said("only_signatures"),)
 
 
 def test_two_signatures_are_both_judged(ask, signed):
     client = certificate("Example Client Ltd")
     twice = sign(signed, p12(client, "Example Client Ltd"), b"secret", now=NOW)
     answers = ask(twice, trust=read_trust(pem(client)))
-    assert set(failures(answers)) == {words.trust_question("signature 1")}
-    assert "later ones follow" in answers[words.intact_question("signature 1")].text
-    assert "whole file" in answers[words.intact_question("signature 2")].text
+    assert set(failures(answers)) == {Question("signer_trusted", 1)}
+    (first,) = answers[Question("intact", 1)].said
+    assert (first.code, first.values["n_bytes"]) == ("signed_part", len(signed))
+    assert codes(answers[Question("intact", 2)].said) == {"signed_whole"}
 
 
 def test_no_network_is_used(ask, signed, monkeypatch):
@@ -96,7 +107,7 @@ def test_one_changed_byte_is_found_in_an_unsigned_document(ask, archive, place):
 def test_one_changed_byte_is_found_in_a_signed_document(ask, signed, place):
     answers = ask(changed(signed, places(signed)[place]))
     assert not ask.holds
-    assert {INTACT, words.READABLE} & set(failures(answers))
+    assert {INTACT, READABLE} & set(failures(answers))
 
 
 def test_a_changed_signature_is_found_also_in_its_padding(ask, signed):
@@ -120,33 +131,36 @@ def test_any_changed_byte_of_the_appended_part_is_found(ask, archive, signed):
 @pytest.mark.parametrize("name", ["results.json", "profile.toml", "tables/points.csv"])
 def test_a_changed_attachment_is_named(ask, archive, signed, name):
     for data in (archive, signed):
-        answers = ask(rewritten(data, name, lambda content: content.replace(b"1", b"2")))
-        assert f"{name} was changed" in failures(answers)[words.FILES]
+        answers = ask(rewritten(data, name, lambda content: content.replace(b"0.1", b"0.2")))
+        assert said("file_changed", file=name) in failures(answers)[FILES]
 
 
 def test_a_better_verdict_in_the_data_is_found_by_assessing_again(ask, inputs):
     def better(acceptance):
-        acceptance["verdict"] = "accepted with honours"
+        acceptance["verdict"] = "rejected"
 
     answers = ask(document(results_of(inputs), change=better))
     assert failures(answers) == {
-        words.ASSESSMENT: "verdict: accepted with honours stated, accepted found"
+        ASSESSMENT: (said("value_differs", path="verdict", stated="rejected", found="accepted"),)
     }
 
 
 def test_a_better_verdict_on_the_page_alone_is_found_by_laying_it_out_again(ask, inputs):
     data = document(results_of(inputs), edit=lambda page: page.replace("accepted", "honoured"))
-    assert failures(ask(data)) == {words.PAGES: "page 1 is not what the data make"}
+    assert failures(ask(data)) == {PAGES: (said("page_differs", number=1),)}
 
 
 def test_what_pages_share_is_compared_too(ask, inputs):
     data = document(results_of(inputs), edit=lambda page: page.replace("Residual", "Resydual"))
-    assert "StructElem" in failures(ask(data))[words.PAGES]
+    kinds = {each.values["kind"] for each in failures(ask(data))[PAGES]}
+    assert "StructElem" in kinds
 
 
 def test_another_number_of_pages_is_said(ask, inputs):
     data = document(results_of(inputs), edit=lambda page: page.replace("</body>", "<h1>X</h1>"))
-    assert re.search(r"it has \d pages, the data make \d", failures(ask(data))[words.PAGES])
+    (only,) = failures(ask(data))[PAGES]
+    assert only.code == "page_count"
+    assert only.values["n_shown"] == only.values["n_made"] + 1
 
 
 def test_missing_unlisted_and_unassessed_files_are_named(ask, inputs):
@@ -155,18 +169,21 @@ def test_missing_unlisted_and_unassessed_files_are_named(ask, inputs):
         acceptance["attachments"][0]["relationship"] = "Source"
         acceptance["results"]["sha256"] = "0"
 
-    said = failures(ask(document(results_of(inputs), change=edit)))[words.FILES]
-    assert "templates/other.j2 is missing" in said
-    assert "templates/logo.svg is not listed" in said
-    assert "results.json has another relationship" in said
-    assert "results.json is not what was assessed" in said
+    assert failures(ask(document(results_of(inputs), change=edit)))[FILES] == (
+        said("file_missing", file="templates/other.j2"),
+        said("file_unlisted", file="templates/logo.svg"),
+        said("file_relationship", file="results.json"),
+        said("file_not_assessed", file="results.json"),
+    )
 
 
 def test_rewriting_everything_consistently_needs_a_signature_or_the_inputs_to_be_found(ask, inputs):
     results = results_of(inputs)
-    results["check_points"][7]["dx_m"] = 0.0001
-    data = document(results)
+    points = list(results.check_point_residuals)
+    points[7] = replace(points[7], dx_m=0.0001)
+    data = document(replace(results, check_point_residuals=tuple(points)))
     ask(data)
     assert ask.holds  # documented: without signature and inputs nothing contradicts it
-    said = failures(ask(data, inputs=inputs))
-    assert said == {words.RECOMPUTED: "check_points[8].dx_m: 0.0001 stated, 0.007 found"}
+    path = "check_point_residuals[8].dx_m"
+    different = said("value_differs", path=path, stated="0.0001", found="0.007")
+    assert failures(ask(data, inputs=inputs)) == {RECOMPUTED: (different,)}
