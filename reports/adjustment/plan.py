@@ -17,7 +17,7 @@ def figure(words: Words, results: AdjustmentResults) -> Drawing | None:
     """The plan; None without images."""
     if not results.images:
         return None
-    view = view_of([vars(image) for image in results.images])
+    view = view_of(results.images)
     slope = view.height_m / view.width_m
     height = min(max(slope * (style.WIDTH_IN - 1.2), 1.4), MAX_PLAN_IN - 1.0)
     figure = style.new_figure(height + 1.1, min(max(height / slope + 1.2, 3.9), style.WIDTH_IN))

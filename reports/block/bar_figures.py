@@ -2,7 +2,7 @@
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -11,51 +11,55 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from posstats.contract.results import ModelParallax, Results
+
 from ..document import format as fmt
 from ..document.drawing import Drawing
+from ..document.rows import rows
 from ..figures import style
 from .view import (
     FIXED,
     GROUND_ANGLES,
-    Results,
-    Row,
+    StripMean,
+    mean_in,
     mean_over_models,
     orientation_label,
-    rows,
     strips_with_models,
-    verdict,
 )
 
 AXES = ("strip", "mean RMS vertical parallax")
 
-_MODEL_SERIES = (
-    ("pos_px", "POS as delivered", style.VERMILLION, "o"),
-    ("corrected_px", "after the selected correction", style.BLUE, "s"),
-    ("independent_px", "relative orientation", style.GREEN, "^"),
+CORRECTED = "after the selected correction"
+
+_MODEL_SERIES: tuple[tuple[Callable[[ModelParallax], float | None], str, str, str], ...] = (
+    (lambda model: model.pos_px, "POS as delivered", style.VERMILLION, "o"),
+    (lambda model: model.corrected_px, CORRECTED, style.BLUE, "s"),
+    (lambda model: model.independent_px, "relative orientation", style.GREEN, "^"),
 )
 
 
 def by_model(results: Results) -> Drawing | None:
     """Parallax of every model in the order of flight, strips side by side."""
-    models = rows(results, "models")
-    values = fmt.present(model[key] for model in models for key, *_ in _MODEL_SERIES)
+    models = results.models
+    values = fmt.present(value(model) for model in models for value, *_ in _MODEL_SERIES)
     values = [value for value in values if value > 0]
     if not values:
         return None
     figure = style.new_figure(3.1)
     axis = figure.add_subplot()
     place = {strip: k for k, strip in enumerate(strips_with_models(results))}
-    ordered = sorted(models, key=lambda model: place.get(model["strip"], len(place)))
-    chosen = verdict(results).get("corrected_angles")
-    for key, label, colour, marker in _MODEL_SERIES:
-        if key == "corrected_px" and not chosen:
+    ordered = sorted(models, key=lambda model: place.get(model.strip, len(place)))
+    chosen = results.verdict.corrected_angles
+    for value, label, colour, marker in _MODEL_SERIES:
+        if label == CORRECTED and not chosen:
             continue  # the same as the POS: it would hide it
-        y = [np.nan if model[key] is None else model[key] for model in ordered]
+        known = [value(model) for model in ordered]
+        y = [np.nan if each is None else each for each in known]
         look: dict[str, Any] = {"marker": marker, "ls": "", "ms": 2.6, "mew": 0.7, "mfc": "none"}
         look = style.dots(colour, 2.8) if marker == "o" else look | {"color": colour}
         axis.plot(range(len(y)), y, label=label, **look)
     style.log_axis(axis, values)
-    _strip_bands(axis, [model["strip"] for model in ordered])
+    _strip_bands(axis, [model.strip for model in ordered])
     axis.set_ylabel("RMS vertical parallax, px")
     style.legend_below(figure, axis, 3)
     caption = (
@@ -82,7 +86,7 @@ def error_sources(results: Results) -> Drawing | None:
 
 def corrected(results: Results) -> Drawing | None:
     """Bars per strip: raw, each angle corrected alone, selected set, relative orientation."""
-    chosen = verdict(results).get("corrected_angles") or []
+    chosen = results.verdict.corrected_angles
     words = f"Selected: {fmt.joined(chosen)}." if chosen else "No correction was selected."
     caption = (
         "Mean RMS vertical parallax per strip from the POS as delivered, with each angle corrected "
@@ -109,30 +113,29 @@ class Bars:
 def held_angles(results: Results, unit: str) -> list[Bars]:
     """Relative orientation with POS angles held, none of them last; `unit` is px or mm."""
     return [
-        _bars(label, rows(results, "error_sources", fixed=name), unit)
-        for name, label in FIXED.items()
+        _bars(label, rows(results.error_sources, fixed=name), unit) for name, label in FIXED.items()
     ]
 
 
 def corrections(results: Results, unit: str, corrected: Sequence[str]) -> list[Bars]:
     """The POS as delivered, corrections of it, relative orientation; `unit` is px or mm."""
     made = [
-        _bars(orientation_label(results, name),
-              rows(results, "corrected_parallax", corrected=name), unit)
+        _bars(orientation_label(name, results.verdict.corrected_angles),
+              rows(results.corrected_parallax, corrected=name), unit)
         for name in corrected
     ]  # fmt: skip
     ends = {"pos": "POS as delivered", "independent": "relative orientation"}
     pos, relative = (
-        _bars(label, rows(results, "parallax", method=name), unit) for name, label in ends.items()
+        _bars(label, rows(results.parallax, method=name), unit) for name, label in ends.items()
     )
     return [pos, *made, relative]
 
 
-def _bars(label: str, per_strip: Sequence[Row], unit: str) -> Bars:
-    key = f"mean_{unit}"
+def _bars(label: str, per_strip: Sequence[StripMean], unit: str) -> Bars:
+    means = {row.strip: mean_in(row, unit) for row in per_strip}
     # Zero, the parallax of data without errors, has no place on a logarithmic scale.
-    known = {row["strip"]: row[key] for row in per_strip if (row[key] or 0.0) > 0.0}
-    return Bars(label, known, mean_over_models(per_strip, key))
+    known = {strip: mean for strip, mean in means.items() if mean is not None and mean > 0.0}
+    return Bars(label, known, mean_over_models(per_strip, unit))
 
 
 def bar_figure(

@@ -2,12 +2,13 @@
 
 from pathlib import Path
 
+from posstats.contract.results import Results
+
 from ..document.drawing import Drawing
 from ..figures.style import style
 from . import bar_figures as figure_parallax
 from . import plan_figures as figure_plan
 from .line_figures import regressions
-from .view import Results
 
 
 def draw(results: Results) -> dict[str, Drawing]:
@@ -16,7 +17,7 @@ def draw(results: Results) -> dict[str, Drawing]:
     Parameters
     ----------
     results
-        The results dictionary.
+        What the analysis found.
 
     Returns
     -------

@@ -13,11 +13,13 @@ from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
 from posstats.arrays import Floats
+from posstats.contract.results import ImageAngleErrors, Regression, Results, Selection
 
 from ..document import format as fmt
 from ..document.drawing import Drawing
+from ..document.rows import first, rows
 from ..figures import style
-from .view import Results, Row, angles, decided_by_strip, first, rows, setting
+from .view import angles, decided_by_strip, error_of
 
 OLS_LABEL = "OLS line, 95 % band"
 GLS_LABEL = "GLS line, 95 % band"
@@ -117,29 +119,27 @@ class Panel:
         self.axis.ticklabel_format(useOffset=False)
 
 
-def ordinary(row: Row) -> Line | None:
+def ordinary(row: Regression) -> Line | None:
     """The OLS line of a regression row, or None if it could not be fitted."""
-    return _line(row, "intercept_rad", "slope_rad_per_s", "intercept_se_rad", "slope_se",
-                 "cov_intercept_slope", "df_resid")  # fmt: skip
+    return _line(row.intercept_rad, row.slope_rad_per_s, row.time_origin_s, row.intercept_se_rad,
+                 row.slope_se, row.cov_intercept_slope, row.df_resid)  # fmt: skip
 
 
-def generalised(row: Row) -> Line | None:
+def generalised(row: Regression) -> Line | None:
     """The GLS line of a regression row, or None if it could not be fitted."""
-    return _line(row, "gls_intercept_rad", "gls_slope_rad_per_s", "gls_intercept_se",
-                 "gls_slope_se", "gls_cov_intercept_slope", "gls_df_resid")  # fmt: skip
+    return _line(row.gls_intercept_rad, row.gls_slope_rad_per_s, row.time_origin_s,
+                 row.gls_intercept_se, row.gls_slope_se, row.gls_cov_intercept_slope,
+                 row.gls_df_resid)  # fmt: skip
 
 
-def _line(row: Row, *names: str) -> Line | None:
-    keys = [*names[:2], "time_origin_s", *names[2:]]
-    values = [row.get(key) for key in keys]
-    if any(fmt.is_missing(value) for value in values):
-        return None
-    return Line(*(float(value) for value in values if value is not None))
+def _line(*values: float | None) -> Line | None:
+    known = fmt.present(values)
+    return Line(*known) if len(known) == len(values) else None
 
 
 def regressions(results: Results) -> list[Drawing]:
     """One figure per angle of the frame of the corrections, if its errors are in the results."""
-    frame = setting(results, "frame", "ground")
+    frame = results.settings.frame
     drawings = [_regression(results, frame, angle) for angle in angles(frame)]
     return [drawing for drawing in drawings if drawing]
 
@@ -150,13 +150,14 @@ def _regression(results: Results, frame: str, angle: str) -> Drawing | None:
         return None
     figure = style.new_figure(3.7)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
-    start = min(row["time_s"] for row in data)
+    start = min(row.time_s for row in data)
     lines = fitted_lines(results, frame, angle)
-    panel = Panel(upper, fmt.angle_unit(row[f"{angle}_rad"] for row in data), start)
+    errors = errors_of(data, angle)
+    panel = Panel(upper, fmt.angle_unit(errors), start)
     draw_errors(panel, data, angle, lines)
-    for row in rows(results, "selection", frame=frame, angle=angle, form="constant"):
+    for row in rows(results.selection, frame=frame, angle=angle, form="constant"):
         _draw_constant(panel, results, row)
-    panel.keep_large([row[f"{angle}_rad"] for row in data])
+    panel.keep_large(errors)
     panel.label(f"error of {angle}")
     _draw_residuals(lower, start, data, angle, lines)
     lower.set_xlabel("time since the first exposure shown, s")
@@ -167,30 +168,40 @@ def _regression(results: Results, frame: str, angle: str) -> Drawing | None:
     return style.finish(figure, name, f"Regression of the error of {angle} on time", caption)
 
 
-def used_errors(results: Results, angle: str) -> list[Row]:
+def used_errors(results: Results, angle: str) -> list[ImageAngleErrors]:
     """Images whose error of an angle is determined."""
-    return [row for row in rows(results, "angle_errors") if row.get("used")
-            and not fmt.is_missing(row.get(f"{angle}_rad"))]  # fmt: skip
+    return [
+        row for row in results.angle_errors if row.used and not fmt.is_missing(error_of(row, angle))
+    ]
+
+
+def errors_of(data: Sequence[ImageAngleErrors], angle: str) -> list[float]:
+    """Errors of an angle, rad, of images where it is determined."""
+    return fmt.present(error_of(row, angle) for row in data)
 
 
 def fitted_lines(results: Results, frame: str, angle: str) -> Lines:
     """Lines of the scope the analysis decided at: the block's, or one per strip."""
     by_strip = decided_by_strip(results)
     fitted = {}
-    for row in rows(results, "regression", frame=frame, angle=angle):
-        if (row["scope"] != "block") == by_strip and (ordinary(row) or generalised(row)):
-            fitted[row["scope"]] = (ordinary(row), generalised(row))
+    for row in rows(results.regression, frame=frame, angle=angle):
+        if (row.scope != "block") == by_strip and (ordinary(row) or generalised(row)):
+            fitted[row.scope] = (ordinary(row), generalised(row))
     return fitted
 
 
 def draw_errors(
-    panel: Panel, data: Sequence[Row], angle: str, lines: Lines, strip_words: str = "strip {strip}"
+    panel: Panel,
+    data: Sequence[ImageAngleErrors],
+    angle: str,
+    lines: Lines,
+    strip_words: str = "strip {strip}",
 ) -> None:
     """Errors of an angle with the fitted lines; `strip_words` names a strip in the legend."""
     for strip, part, look in _by_strip(data):
-        errors = [row[f"{angle}_rad"] for row in part]
+        errors = errors_of(part, angle)
         label = strip_words.format(strip=fmt.shortened(strip))
-        panel.points([row["time_s"] for row in part], errors, label, look)
+        panel.points([row.time_s for row in part], errors, label, look)
     for scope, (ols, gls) in lines.items():
         times = _times(data, scope)
         if times:
@@ -198,18 +209,18 @@ def draw_errors(
 
 
 def _draw_residuals(
-    axis: Axes, start_s: float, data: Sequence[Row], angle: str, lines: Lines
+    axis: Axes, start_s: float, data: Sequence[ImageAngleErrors], angle: str, lines: Lines
 ) -> None:
     """Errors less their OLS line, where its band is large enough to be seen."""
     residuals = {}
-    for row in data:
-        ols = lines.get("block", lines.get(row["strip"], (None, None)))[0]
+    for row, error in zip(data, errors_of(data, angle), strict=True):
+        ols = lines.get("block", lines.get(row.strip, (None, None)))[0]
         if ols:
-            residuals[row["image"]] = row[f"{angle}_rad"] - float(ols.at(row["time_s"]))
+            residuals[row.image] = error - float(ols.at(np.asarray(row.time_s)))
     panel = Panel(axis, fmt.angle_unit(residuals.values()), start_s)
-    for _, part, look in _by_strip([row for row in data if row["image"] in residuals]):
-        errors = [residuals[row["image"]] for row in part]
-        panel.points([row["time_s"] for row in part], errors, "_", look)
+    for _, part, look in _by_strip([row for row in data if row.image in residuals]):
+        errors = [residuals[row.image] for row in part]
+        panel.points([row.time_s for row in part], errors, "_", look)
     for scope, (ols, gls) in lines.items():
         times = _times(data, scope)
         if times and ols:
@@ -219,24 +230,25 @@ def _draw_residuals(
     panel.label("residual")
 
 
-def _by_strip(data: Sequence[Row]) -> Iterator[tuple[str, list[Row], dict[str, Any]]]:
+def _by_strip(
+    data: Sequence[ImageAngleErrors],
+) -> Iterator[tuple[str, list[ImageAngleErrors], dict[str, Any]]]:
     """Each strip, its rows and the look of its marks."""
-    strips = dict.fromkeys(row["strip"] for row in data)
+    strips = dict.fromkeys(row.strip for row in data)
     for strip, (colour, marker) in style.strip_style(list(strips)).items():
         look = {"color": colour, "marker": marker, "ls": "", "ms": 3.2, "mew": 0.6, "mfc": "none"}
-        yield strip, [row for row in data if row["strip"] == strip], look
+        yield strip, [row for row in data if row.strip == strip], look
 
 
-def _times(data: Sequence[Row], scope: str) -> list[float]:
-    return [row["time_s"] for row in data if scope in ("block", row["strip"])]
+def _times(data: Sequence[ImageAngleErrors], scope: str) -> list[float]:
+    return [row.time_s for row in data if scope in ("block", row.strip)]
 
 
-def _draw_constant(panel: Panel, results: Results, decision: Row) -> None:
+def _draw_constant(panel: Panel, results: Results, decision: Selection) -> None:
     """The constant that is taken off the whole block."""
-    which = {key: decision[key] for key in ("frame", "angle", "scope")}
-    constant = first(results, "regression", **which).get("constant_rad")
-    if decision["scope"] == "block" and constant is not None:
-        panel.axis.axhline(constant * panel.unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
+    fit = first(results.regression, frame=decision.frame, angle=decision.angle, scope="block")
+    if decision.scope == "block" and fit and fit.constant_rad is not None:
+        panel.axis.axhline(fit.constant_rad * panel.unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
                            label="constant taken off")  # fmt: skip
 
 

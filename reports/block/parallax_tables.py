@@ -1,8 +1,11 @@
 """Tables of vertical parallax: by strip, by model, by angle held, by angle corrected."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+
+from posstats.contract.results import Results, StripParallax
 
 from ..document import format as fmt
+from ..document.rows import first, rows
 from ..document.table import (
     Column,
     Table,
@@ -14,12 +17,9 @@ from ..document.table import (
 from .view import (
     FIXED,
     METHODS,
-    Results,
-    Row,
-    first,
+    StripMean,
     mean_over_models,
     orientation_label,
-    rows,
     strips,
     strips_with_models,
 )
@@ -31,11 +31,12 @@ def by_strip(results: Results, unit: str) -> Table:
     """Maximum, minimum and mean parallax of the strips in one unit (``px`` or ``mm``)."""
     kept = strips_with_models(results)
     columns = [text_column("Strip", [*kept, "block"])]
-    n_models = [first(results, "parallax", strip=s).get("n_models") for s in kept]
+    found = [first(results.parallax, strip=s) for s in kept]
+    n_models = [row.n_models if row else None for row in found]
     columns.append(count_column("Models", [*n_models, sum(fmt.present(n_models))]))
     for method, words in METHODS.items():
-        part = [first(results, "parallax", strip=s, method=method) for s in kept]
-        if any(not fmt.is_missing(row.get("mean_px")) for row in part):
+        part = [first(results.parallax, strip=s, method=method) for s in kept]
+        if any(row and not fmt.is_missing(row.mean_px) for row in part):
             columns += _extremes(part, unit, words)
     place = "on the image, " if unit == "px" else "at image scale, "
     caption = (
@@ -49,12 +50,14 @@ def by_strip(results: Results, unit: str) -> Table:
     return Table(f"parallax_{unit}", caption, tuple(columns), notes, frozenset({len(kept)}))
 
 
-def _extremes(part: Sequence[Row], unit: str, words: str) -> list[Column]:
-    values = {name: [row.get(f"{name}_{unit}") for row in part] for name in ("max", "min", "mean")}
+def _extremes(part: Sequence[StripParallax | None], unit: str, words: str) -> list[Column]:
+    values = {
+        name: [_number(row, f"{name}_{unit}") for row in part] for name in ("max", "min", "mean")
+    }
     block = {
         "max": max(fmt.present(values["max"]), default=None),
         "min": min(fmt.present(values["min"]), default=None),
-        "mean": mean_over_models(part, f"mean_{unit}"),
+        "mean": mean_over_models(part, unit),
     }
     decimals = fmt.shared_decimals([v for column in values.values() for v in column])
     return [
@@ -68,26 +71,29 @@ def _extremes(part: Sequence[Row], unit: str, words: str) -> list[Column]:
     ]
 
 
+def _number(row: StripParallax | None, name: str) -> float | None:
+    value: float | None = getattr(row, name, None)
+    return value
+
+
 def by_model(results: Results) -> Table:
     """The models of largest POS parallax (all, if there are few; then without a solution last)."""
-    models = rows(results, "models")
-    ranked = sorted(
-        models, key=lambda m: -(m["pos_px"] if m["pos_px"] is not None else float("-inf"))
-    )
+    models = results.models
+    ranked = sorted(models, key=lambda m: -(m.pos_px if m.pos_px is not None else float("-inf")))
     shown = ranked if len(models) <= 2 * SHOWN_MODELS else ranked[:SHOWN_MODELS]
     which = (
         "every stereo model" if len(shown) == len(models)
         else f"the {len(shown)} of {len(models)} stereo models with the largest POS parallax"
     )  # fmt: skip
     columns = (
-        text_column("Left image", [m["left"] for m in shown]),
-        text_column("Right image", [m["right"] for m in shown]),
-        text_column("Strip", [m["strip"] for m in shown]),
-        count_column("Points", [m["n_points"] for m in shown]),
-        count_column("Rejected", [m["n_rejected"] for m in shown]),
-        aligned_column("POS", "px", [m["pos_px"] for m in shown]),
-        aligned_column("Corrected", "px", [m["corrected_px"] for m in shown]),
-        aligned_column("Relative", "px", [m["independent_px"] for m in shown]),
+        text_column("Left image", [m.left for m in shown]),
+        text_column("Right image", [m.right for m in shown]),
+        text_column("Strip", [m.strip for m in shown]),
+        count_column("Points", [m.n_points for m in shown]),
+        count_column("Rejected", [m.n_rejected for m in shown]),
+        aligned_column("POS", "px", [m.pos_px for m in shown]),
+        aligned_column("Corrected", "px", [m.corrected_px for m in shown]),
+        aligned_column("Relative", "px", [m.independent_px for m in shown]),
     )
     caption = (
         f"RMS vertical parallax of {which}: from the POS as delivered, after the selected "
@@ -104,7 +110,8 @@ def by_model(results: Results) -> Table:
 def error_sources(results: Results) -> Table:
     """Mean parallax per strip with POS angles of the right image held."""
     return _per_strip(
-        results, "error_sources", "fixed", FIXED,
+        results, "error_sources",
+        {words: rows(results.error_sources, fixed=name) for name, words in FIXED.items()},
         "Error sources: mean RMS vertical parallax of the strips after relative orientation in "
         "which the named POS angles of the right image are held fixed, px.",
     )  # fmt: skip
@@ -113,17 +120,23 @@ def error_sources(results: Results) -> Table:
 def corrected(results: Results) -> Table:
     """Mean parallax per strip after the correction of each angle alone and of the selected set."""
     names = ("omega", "phi", "kappa", "selected")
-    present = {row["corrected"] for row in rows(results, "corrected_parallax")}
-    words = {n: orientation_label(results, n) for n in names if n in present}
-    words |= {n: orientation_label(results, n) for n in sorted(present - set(names))}
+    present = {row.corrected for row in results.corrected_parallax}
+    shown = [name for name in names if name in present]
+    made = {
+        orientation_label(name, results.verdict.corrected_angles): rows(
+            results.corrected_parallax, corrected=name
+        )
+        for name in shown
+    }
     table = _per_strip(
-        results, "corrected_parallax", "corrected", words,
+        results, "corrected_parallax", made,
         "Mean RMS vertical parallax of the strips from the POS as delivered, after the correction "
         "of each angle alone, after the selected corrections, and after relative orientation, px.",
     )  # fmt: skip
-    kept = _strips_in(results, "corrected_parallax")
-    raw = [first(results, "parallax", strip=s, method="pos").get("mean_px") for s in kept]
-    free = [first(results, "parallax", strip=s, method="independent").get("mean_px") for s in kept]
+    kept = _strips_in(results, results.corrected_parallax)
+    raw, free = (
+        _means(kept, rows(results.parallax, method=method)) for method in ("pos", "independent")
+    )
     columns = (
         table.columns[0],
         number_column("POS as delivered", "px", raw),
@@ -133,18 +146,24 @@ def corrected(results: Results) -> Table:
     return Table(table.name, table.caption, columns, table.notes)
 
 
-def _per_strip(results: Results, key: str, name: str, words: dict[str, str], caption: str) -> Table:
-    kept = _strips_in(results, key)
+def _per_strip(
+    results: Results, name: str, made: Mapping[str, Sequence[StripMean]], caption: str
+) -> Table:
+    """Mean parallax per strip, px, with a column for every orientation that was made."""
+    kept = _strips_in(results, [row for part in made.values() for row in part])
     columns = [text_column("Strip", kept)]
-    for value, title in words.items():
-        means = [first(results, key, strip=s, **{name: value}).get("mean_px") for s in kept]
-        columns.append(number_column(title, "px", means))
-    return Table(key, caption, tuple(columns), _left_out(results, kept))
+    columns += [number_column(title, "px", _means(kept, part)) for title, part in made.items()]
+    return Table(name, caption, tuple(columns), _left_out(results, kept))
 
 
-def _strips_in(results: Results, key: str) -> list[str]:
+def _means(kept: Sequence[str], part: Sequence[StripMean]) -> list[float | None]:
+    found = (first(part, strip=strip) for strip in kept)
+    return [row.mean_px if row else None for row in found]
+
+
+def _strips_in(results: Results, part: Sequence[StripMean]) -> list[str]:
     """Strips with at least one value; strips without a model would be rows of dashes."""
-    known = {row["strip"] for row in rows(results, key) if not fmt.is_missing(row.get("mean_px"))}
+    known = {row.strip for row in part if not fmt.is_missing(row.mean_px)}
     return [strip for strip in strips(results) if strip in known]
 
 

@@ -13,9 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from posstats.arrays import Floats
+from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.results import ModelParallax, Results
+from posstats.contract.survey import ImagePlace
 
 from ..document import format as fmt
 from ..document.drawing import Drawing
+from ..document.rows import rows
 from ..figures import style
 from ..figures.plan_view import (
     PlanView,
@@ -24,9 +28,10 @@ from ..figures.plan_view import (
     north_and_scale,
     polylines,
     scale_arrow,
+    view_around,
     view_of,
 )
-from .view import Results, Row, rows, strips
+from .view import strips
 
 Label = tuple[Floats, str]  # middle in points, text
 
@@ -39,7 +44,7 @@ BESIDE_TURNED_IN, BELOW_TURNED_IN = 0.9, 1.5  # the same with the colour bar bel
 
 def block_plan(results: Results) -> Drawing | None:
     """Plan with north up, or right if the block is long; None without image positions."""
-    images = rows(results, "images")
+    images = results.images
     if not images:
         return None
     view = view_of(images)
@@ -47,9 +52,9 @@ def block_plan(results: Results) -> Drawing | None:
     figure = style.new_figure(height, width)
     axis = figure.add_subplot()
     _footprints(axis, view, images)
-    _models(figure, axis, view, results, images)
+    _models(figure, axis, view, results.models, images)
     _strip_labels(axis, view, results, images, points_per_metre)
-    points = rows(results, "check_point_residuals", orientation="pos")
+    points = rows(results.check_point_residuals, orientation="pos")
     has_vectors = _check_points(axis, view, points)
     view.dress(axis)
     north_and_scale(axis, view)
@@ -71,34 +76,37 @@ def block_plan(results: Results) -> Drawing | None:
 def check_point_plan(results: Results) -> Drawing | None:
     """Differences at check points before and after the selected correction, shift removed."""
     words = {"pos": "POS as delivered", "selected": "after the selected correction"}
-    return difference_plan(results, words, centred=True)
+    return difference_plan(results.images, results.check_point_residuals, words, centred=True)
 
 
 def difference_plan(
-    results: Results, orientations: Mapping[str, str], *, centred: bool
+    images: Sequence[ImagePlace],
+    residuals: Sequence[CheckPointResidual],
+    orientations: Mapping[str, str],
+    *,
+    centred: bool,
 ) -> Drawing | None:
     """Differences at check points from several orientations, one panel each; None without.
 
     Parameters
     ----------
-    results
-        With images and the residuals of check points.
+    images
+        Of the block, behind the arrows; may be empty.
+    residuals
+        Of check points, by all orientations.
     orientations
         Titles of the panels by the names of the orientations.
     centred
         Whether the mean difference is taken off.
     """
-    found = [
-        (words, rows(results, "check_point_residuals", orientation=name))
-        for name, words in orientations.items()
-    ]
+    found = [(words, rows(residuals, orientation=name)) for name, words in orientations.items()]
     panels = [(words, part) for words, part in found if part]
     if not panels:
         return None
-    view = view_of(rows(results, "images") or panels[0][1])
+    view = view_of(images) if images else view_around(_places(panels[0][1]))
     figure, axes = _panels(view, len(panels))
     for axis, (words, part) in zip(axes, panels, strict=True):
-        images_behind(axis, view, results)
+        images_behind(axis, view, images)
         with_north = view.turned and axis is axes[0]
         _differences(axis, view, part, row=1 if with_north else 0, centred=centred)
         axis.set_title(words, loc="right" if view.turned else "left", pad=4 if view.turned else 20)
@@ -138,19 +146,23 @@ def _sizes(view: PlanView) -> tuple[float, float, float]:
     return height + below, width, height * 72.0 / view.height_m
 
 
-def _footprints(axis: Axes, view: PlanView, images: Sequence[Row]) -> None:
-    closed = [(*row["footprint"], row["footprint"][0]) for row in images if row.get("footprint")]
+def _footprints(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> None:
+    closed = [(*row.footprint, row.footprint[0]) for row in images if row.footprint]
     polylines(axis, view, closed, color=style.LIGHT, lw=0.35, zorder=1)
 
 
 def _models(
-    figure: Figure, axis: Axes, view: PlanView, results: Results, images: Sequence[Row]
+    figure: Figure,
+    axis: Axes,
+    view: PlanView,
+    models: Sequence[ModelParallax],
+    images: Sequence[ImagePlace],
 ) -> None:
     """Models as lines between their images, in classes of colour."""
-    place = {row["image"]: (row["x_m"], row["y_m"]) for row in images}
-    pairs = [m for m in rows(results, "models") if m["left"] in place and m["right"] in place]
-    lines = [(place[m["left"]], place[m["right"]]) for m in pairs]
-    values = [m["pos_px"] for m in pairs]
+    place = {row.image: (row.x_m, row.y_m) for row in images}
+    pairs = [m for m in models if m.left in place and m.right in place]
+    lines = [(place[m.left], place[m.right]) for m in pairs]
+    values = [m.pos_px for m in pairs]
     edges = _classes(fmt.present(values))
     palette = matplotlib.colormaps["viridis_r"].resampled(max(len(edges) - 1, 2))
     for k, (low, high) in enumerate(pairwise(edges)):
@@ -207,13 +219,13 @@ def _strip_labels(
     axis: Axes,
     view: PlanView,
     results: Results,
-    images: Sequence[Row],
+    images: Sequence[ImagePlace],
     points_per_metre: float,
 ) -> None:
     """Strip ids beside their first exposures, each where it covers none of the others."""
     taken: list[Label] = []
     for strip in strips(results):
-        stations = [(r["x_m"], r["y_m"]) for r in images if r["strip"] == strip]
+        stations = [(r.x_m, r.y_m) for r in images if r.strip == strip]
         if not stations:
             continue
         text = fmt.shortened(strip, LABEL_LENGTH)
@@ -256,18 +268,18 @@ def _overlap(one: Label, other: Label) -> bool:
     return bool(apart[0] < width + 2.0 and apart[1] < LINE_PT)
 
 
-def images_behind(axis: Axes, view: PlanView, results: Results) -> None:
+def images_behind(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> None:
     """Exposure stations as pale dots, for orientation."""
-    places = [(row["x_m"], row["y_m"]) for row in rows(results, "images")]
+    places = [(row.x_m, row.y_m) for row in images]
     if places:
         axis.plot(*view.drawn(places), **style.dots(style.LIGHT, 1.6))
 
 
-def _check_points(axis: Axes, view: PlanView, points: Sequence[Row]) -> bool:
+def _check_points(axis: Axes, view: PlanView, points: Sequence[CheckPointResidual]) -> bool:
     """Triangles at the check points and their horizontal differences as arrows."""
     if not points:
         return False
-    place, difference = _columns(points, "x_m", "y_m"), _columns(points, "dx_m", "dy_m")
+    place, difference = _places(points), _differences_m(points)[:, :2]
     axis.plot(*view.drawn(place), "^", color="white", mec=style.VERMILLION, mew=1.0, ms=5.5,
               zorder=4)  # fmt: skip
     scale = arrow_scale(np.hypot(*difference.T), view)
@@ -279,10 +291,10 @@ def _check_points(axis: Axes, view: PlanView, points: Sequence[Row]) -> bool:
 
 
 def _differences(
-    axis: Axes, view: PlanView, points: Sequence[Row], row: int, *, centred: bool
+    axis: Axes, view: PlanView, points: Sequence[CheckPointResidual], row: int, *, centred: bool
 ) -> None:
     """Horizontal and vertical differences as arrows, the mean of each removed if `centred`."""
-    place, difference = _columns(points, "x_m", "y_m"), _columns(points, "dx_m", "dy_m", "dz_m")
+    place, difference = _places(points), _differences_m(points)
     if centred and np.isfinite(difference).all(axis=1).sum() > 1:
         difference = difference - np.nanmean(difference, axis=0)
     axis.plot(*view.drawn(place), "^", color="white", mec=style.BLACK, mew=0.7, ms=4.0, zorder=4)
@@ -295,5 +307,10 @@ def _differences(
     scale_arrow(axis, view, scale, style.BLACK, row)
 
 
-def _columns(points: Sequence[Row], *names: str) -> Floats:
-    return np.array([[math.nan if p[k] is None else p[k] for k in names] for p in points])
+def _places(points: Sequence[CheckPointResidual]) -> Floats:
+    return np.array([(point.x_m, point.y_m) for point in points])
+
+
+def _differences_m(points: Sequence[CheckPointResidual]) -> Floats:
+    """Differences (n, 3), NaN where unknown."""
+    return np.array([(p.dx_m, p.dy_m, p.dz_m) for p in points], dtype=float)

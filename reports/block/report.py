@@ -2,14 +2,15 @@
 
 from pathlib import Path
 
-from ..document import table as tables
+from posstats.contract.results import Results
+
 from ..document.numbering import ReportDocument
 from ..pages import html
 from ..pages import pdf as pdf_writer
 from ..pages.garbage import garbage_kept
 from . import document as block_document
 from . import figures
-from .view import Results
+from .csv_files import write_tables
 
 
 def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
@@ -22,7 +23,7 @@ def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
     """
     folder.mkdir(parents=True, exist_ok=True)
     with garbage_kept():
-        tables.write_tables(results, folder / "tables")
+        write_tables(results, folder / "tables")
         drawings = figures.draw(results)
         figures.write_figures(results, folder / "figures", drawings)
         return write_pages(block_document.build(results, drawings), folder / "report", pdf=pdf)

@@ -1,15 +1,19 @@
 """What a block's report says, section by section, around its tables and figures."""
 
+from posstats.contract.results import Bundle, Results
+
 from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled, known
 from ..document.drawing import Drawing
+from ..document.rows import rows
+from ..document.table import pairs
 from . import parallax_tables, regression_tables, statistics_tables
-from .view import Results, decided_by_strip, has_mm, rows, setting
+from .view import decided_by_strip
 
 
 def subtitle(results: Results) -> str:
     """The block in figures."""
-    block = results["block"]
+    block = results.block
     counted = (
         ("n_images", "images"),
         ("n_strips", "strips"),
@@ -17,7 +21,7 @@ def subtitle(results: Results) -> str:
         ("n_tie_points", "tie points"),
         ("n_check_points", "check points"),
     )
-    return " · ".join(f"{fmt.count(block[key])} {words}" for key, words in counted)
+    return " · ".join(f"{fmt.count(getattr(block, key))} {words}" for key, words in counted)
 
 
 def block_report(
@@ -29,7 +33,7 @@ def block_report(
         _parallax(results, drawings),
         _error_sources(results, drawings),
         _angle_errors(results),
-        *_bundle(results),
+        *_bundle(results.bundle),
         _regression(results, drawings),
         _decisions(results),
         _corrected(results, drawings),
@@ -41,7 +45,7 @@ def block_report(
 
 
 def _parallax(results: Results, drawings: dict[str, Drawing]) -> Part:
-    units = ("px", "mm") if has_mm(results) else ("px",)
+    units = ("px", "mm") if results.units.mm else ("px",)
     text = (
         "Vertical parallax is what keeps two conjugate rays from meeting: their distance across "
         "the base, at the scale of the image. A stereo model is two consecutive exposures of a "
@@ -50,7 +54,7 @@ def _parallax(results: Results, drawings: dict[str, Drawing]) -> Part:
         "measuring noise; parallax left by relative orientation, which needs no POS angles, shows "
         "the measuring noise alone."
     )
-    if not has_mm(results):
+    if not results.units.mm:
         text += " The pixel size is not known, so all parallax is given in pixels (px)."
     tables = [parallax_tables.by_strip(results, unit) for unit in units]
     models = parallax_tables.by_model(results)
@@ -88,10 +92,10 @@ def _angle_errors(results: Results) -> Part:
     }
     text = (
         "The error of an angle is POS minus estimated, one value per image. "
-        f"{how.get(setting(results, 'errors'), '')}"
+        f"{how[results.settings.errors]}"
     )
-    errors = rows(results, "angle_errors")
-    unused = [row["image"] for row in errors if not row["used"]]
+    errors = results.angle_errors
+    unused = [row.image for row in errors if not row.used]
     if unused:
         few = "" if len(unused) > 12 else f" ({', '.join(unused)})"
         text += (
@@ -105,9 +109,9 @@ def _angle_errors(results: Results) -> Part:
     )
 
 
-def _bundle(results: Results) -> tuple[Part, ...]:
+def _bundle(bundle: Bundle | None) -> tuple[Part, ...]:
     """Nothing, unless the angle errors come from a bundle adjustment."""
-    if not results.get("bundle"):
+    if bundle is None:
         return ()
     text = (
         "The rays of every point have to meet in it. Sigma0 compares the residuals of image "
@@ -124,15 +128,14 @@ def _bundle(results: Results) -> tuple[Part, ...]:
             "bundle",
             "Bundle adjustment",
             (
-                Paragraph(f"{text} {_gain_of_control(results)}"),
-                *filled([statistics_tables.bundle(results)]),
+                Paragraph(f"{text} {_gain_of_control(bundle.n_control_points)}"),
+                *filled([statistics_tables.bundle(bundle)]),
             ),
         ),
     )
 
 
-def _gain_of_control(results: Results) -> str:
-    n = results["bundle"]["n_control_points"]
+def _gain_of_control(n: int) -> str:
     if not n:
         return (
             "The block has no measured control point, so this adjustment leaves open the same "
@@ -152,7 +155,7 @@ def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
         "errors of neighbouring images come from the same tie points, and along one strip alone "
         "they form a chain, for which OLS intervals are far too narrow."
     )
-    if setting(results, "frame") == "camera":
+    if results.settings.frame == "camera":
         text += " The figures show the frame of the corrections: angles about the camera's axes."
     pictures = [drawing for name, drawing in drawings.items() if name.startswith("regression")]
     tables = [
@@ -166,22 +169,22 @@ def _regression(results: Results, drawings: dict[str, Drawing]) -> Part:
 
 
 def _decisions(results: Results) -> Part:
-    frame = setting(results, "frame", "ground")
+    frame = results.settings.frame
     text = (
-        f"Rules: {setting(results, 'rules', 'paper')}. Scope: {setting(results, 'scope')}. "
+        f"Rules: {results.settings.rules}. Scope: {results.settings.scope}. "
         f"Frame of the corrections: {frame} (ground: the angle as delivered; camera: a rotation "
         "about the axes of the image, in which a misalignment of the camera is constant)."
     )
-    why = setting(results, "frame_reason")
+    why = results.settings.frame_reason or ""
     content: list[Content] = [Paragraph(f"{text} {why}".strip())]
-    compared = rows(results, "frames")
+    compared = results.frames
     if compared:
         content.append(
-            statistics_tables.pairs(
+            pairs(
                 "frames",
                 "Mean vertical parallax of strips whose own errors took no part in the fit, px.",
                 ("Frame", "Parallax out of sample, px"),
-                [(row["frame"], fmt.number(row["out_of_sample_px"])) for row in compared],
+                [(row.frame, fmt.number(row.out_of_sample_px)) for row in compared],
             )
         )
     if decided_by_strip(results):
@@ -196,8 +199,8 @@ def _corrected(results: Results, drawings: dict[str, Drawing]) -> Part:
         "corrected POS, for each of omega, phi and kappa alone and for the selected set. “Alone” "
         "is by definition the OLS line of that angle in the ground frame, whatever was decided."
     )
-    forms = {row["form"] for row in rows(results, "selection") if row["correct"]}
-    if setting(results, "frame") == "camera" or "constant" in forms:
+    forms = {row.form for row in results.selection if row.correct}
+    if results.settings.frame == "camera" or "constant" in forms:
         text += (
             " The selected set is of another kind (a constant, or about the camera's axes), so it "
             "can do what no single line does."
@@ -211,7 +214,12 @@ def _corrected(results: Results, drawings: dict[str, Drawing]) -> Part:
 
 
 def _check_points(results: Results, drawings: dict[str, Drawing]) -> Part:
-    tables = [statistics_tables.check_points(results, translation_removed=r) for r in (True, False)]
+    tables = [
+        statistics_tables.check_points(
+            results.check_points, results.verdict.corrected_angles, translation_removed=removed
+        )
+        for removed in (True, False)
+    ]
     if not any(table.rows for table in tables):
         none = Paragraph(
             "No check points could be used, so the accuracy on the ground was not tested."
@@ -239,10 +247,9 @@ def _limits(results: Results) -> Part:
     if blind := _less_known_than_stated(results):
         text += f" {blind}"
     table = statistics_tables.observability(results)
-    warnings = tuple(str(warning) for warning in results.get("warnings") or ())
     told = (
-        (Paragraph("Warnings of the analysis:"), Bullets(warnings))
-        if warnings
+        (Paragraph("Warnings of the analysis:"), Bullets(results.warnings))
+        if results.warnings
         else (Paragraph("The analysis gave no warnings."),)
     )
     return Part(
@@ -254,11 +261,11 @@ def _limits(results: Results) -> Part:
 
 def _less_known_than_stated(results: Results) -> str:
     """Angles that the tie points give less well than the POS claims to know them."""
-    stated = (results.get("settings") or {}).get("angle_rad")
+    stated = results.settings.angle_rad
     known = {
-        row["angle"]: row["median_sigma_rad"]
-        for row in rows(results, "angle_error_summary", frame="ground")
-        if stated and row["median_sigma_rad"] and row["median_sigma_rad"] > stated
+        row.angle: row.median_sigma_rad
+        for row in rows(results.angle_error_summary, frame="ground")
+        if stated and row.median_sigma_rad and row.median_sigma_rad > stated
     }
     if not known:
         return ""
@@ -277,17 +284,11 @@ def _provenance(results: Results) -> Part:
         "frame": "Frame of the corrections",
         "robust": "Robust estimation",
     }
-    settings = results.get("settings") or {}
-    shown = [(text, _plain(settings.get(key))) for key, text in words.items()]
-    versions = [
-        (str(name), str(version)) for name, version in (results.get("versions") or {}).items()
-    ]
+    shown = [(text, _plain(getattr(results.settings, key))) for key, text in words.items()]
     tables = [
-        statistics_tables.inputs(results),
-        statistics_tables.pairs(
-            "settings", "Settings of the analysis.", ("Setting", "Value"), shown
-        ),
-        statistics_tables.pairs("versions", "Software.", ("Package", "Version"), versions),
+        statistics_tables.inputs(results.block.inputs),
+        pairs("settings", "Settings of the analysis.", ("Setting", "Value"), shown),
+        pairs("versions", "Software.", ("Package", "Version"), results.versions.items()),
     ]
     return Part("provenance", "Inputs, settings, versions", filled(tables))
 

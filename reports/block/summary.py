@@ -3,9 +3,12 @@
 import textwrap
 from collections.abc import Iterator
 
+from posstats.contract.results import Results
+
 from ..document import format as fmt
+from ..document.rows import rows
 from . import verdict
-from .view import Results, decided_by_strip, rows
+from .view import decided_by_strip
 
 WIDTH = 88
 SHOWN_STRIPS = 12
@@ -13,27 +16,27 @@ SHOWN_STRIPS = 12
 
 def summary(results: Results) -> Iterator[str]:
     """The verdict of the report, its decisions and its warnings, as lines of text."""
-    block = results["block"]
-    simulated = " (simulated)" if block["simulated"] else ""
-    yield f"{block['name']}{simulated}: {block['n_images']} images, {block['n_models']} models"
+    block = results.block
+    simulated = " (simulated)" if block.simulated else ""
+    yield f"{block.name}{simulated}: {block.n_images} images, {block.n_models} models"
     yield ""
     yield from textwrap.wrap(verdict.paragraph(results), WIDTH)
     yield ""
     for line in _decisions(results):
         yield from textwrap.wrap(line, WIDTH, subsequent_indent="  ")
-    for warning in results["warnings"]:
+    for warning in results.warnings:
         yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
 
 
 def _decisions(results: Results) -> Iterator[str]:
     """One line per angle; reasons where the block was decided as a whole."""
     if not decided_by_strip(results):
-        for row in results["selection"]:
-            yield f"{row['angle']}: {row['form']} ({fmt.prose(row['reason'])})"
+        for row in results.selection:
+            yield f"{row.angle}: {row.form} ({fmt.prose(row.reason)})"
         return
-    for angle in dict.fromkeys(row["angle"] for row in results["selection"]):
-        decided = rows(results, "selection", angle=angle)
-        made = [f"strip {row['scope']} {row['form']}" for row in decided if row["correct"]]
+    for angle in dict.fromkeys(row.angle for row in results.selection):
+        decided = rows(results.selection, angle=angle)
+        made = [f"strip {row.scope} {row.form}" for row in decided if row.correct]
         more = f" and {len(made) - SHOWN_STRIPS} more" if len(made) > SHOWN_STRIPS else ""
         which = f": {', '.join(made[:SHOWN_STRIPS])}{more}" if made else ""
         yield f"{angle}: corrected in {len(made)} of {len(decided)} strips{which}"

@@ -1,7 +1,10 @@
 """Sentences of the verdict: the angle that parallax comes from, and its error over time."""
 
+from posstats.contract.results import Regression, Results
+
 from ..document import format as fmt
-from .view import Results, Row, first, mean_over_models, rows, setting, verdict
+from ..document.rows import first, rows
+from .view import mean_over_models
 
 NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
 SIGNIFICANT = 0.05
@@ -11,12 +14,12 @@ STEADY = 3.0  # strip effect over white noise from which the strips are what dif
 
 def cause(results: Results) -> str:
     """Which angle the parallax comes from, by what holding it leaves."""
-    numbers = verdict(results)
-    name, raw, relative = (numbers.get(key) for key in ("cause", "raw_px", "relative_px"))
+    numbers = results.verdict
+    name, raw, relative = numbers.cause, numbers.raw_px, numbers.relative_px
     if name:
-        held = mean_over_models(rows(results, "error_sources", fixed=name))
-        every = mean_over_models(rows(results, "error_sources", fixed="angles"))
-        share = numbers.get("cause_share")
+        held = mean_over_models(rows(results.error_sources, fixed=name))
+        every = mean_over_models(rows(results.error_sources, fixed="angles"))
+        share = numbers.cause_share
         most = share is not None and share < ALONE
         text = f"{'Most of it comes' if most else 'The parallax comes'} from {name}"
         if held is not None and every is not None:
@@ -26,9 +29,9 @@ def cause(results: Results) -> str:
                 f"{fmt.with_unit(every, 'px')}"
             )
         return f"{text}."
-    if relative and raw / relative < NEAR_RELATIVE:
+    if relative and raw is not None and raw / relative < NEAR_RELATIVE:
         return "This is about as good as the images allow, and no angle stands out."
-    every = mean_over_models(rows(results, "error_sources", fixed="angles"))
+    every = mean_over_models(rows(results.error_sources, fixed="angles"))
     if relative and every is not None and every < NEAR_RELATIVE * relative:
         return (
             "It does not come from the angles: with all three held at their POS values, relative "
@@ -39,44 +42,45 @@ def cause(results: Results) -> str:
 
 def over_time(results: Results) -> str:
     """Whether the error of the cause (or of every angle) follows time, by OLS and GLS."""
-    name = verdict(results).get("cause")
+    name = results.verdict.cause
     if not name:
         return _shares(results)
-    row = first(results, "regression", angle=name, frame="ground", scope="block")
-    if fmt.is_missing(row.get("r_squared")):
-        why = row.get("reason")
+    row = first(results.regression, angle=name, frame="ground", scope="block")
+    if row is None or row.r_squared is None:
+        why = row and row.reason
         return f"Whether its error follows time could not be tested{f' ({why})' if why else ''}."
     evidence = (
-        f"R² = {fmt.fixed(row['r_squared'], 3)}, {fmt.p_phrase(row['p_value'])}, "
-        f"{row['n']} images {_stretches(row)}"
+        f"R² = {fmt.fixed(row.r_squared, 3)}, {fmt.p_phrase(row.p_value)}, "
+        f"{row.n} images {_stretches(row)}"
     )
-    if row["p_value"] is None or row["p_value"] >= SIGNIFICANT:
+    if row.p_value is None or row.p_value >= SIGNIFICANT:
         return _not_over_time(results, row, evidence)
-    middle = f"Its error is {fmt.angle(row['intercept_rad'])} at mid-time"
-    change = fmt.rate(row["slope_rad_per_s"])
+    middle = f"Its error is {fmt.angle(row.intercept_rad)} at mid-time"
+    change = fmt.rate(row.slope_rad_per_s)
     return f"{middle} and follows time: it changes by {change} ({evidence}); {_surely(row)}."
 
 
-def _stretches(row: Row) -> str:
-    n = row["n_time_clusters"]
+def _stretches(row: Regression) -> str:
+    n = row.n_time_clusters
     return "in one stretch of time" if n == 1 else f"in {fmt.count(n)} separate stretches of time"
 
 
-def _not_over_time(results: Results, row: Row, evidence: str) -> str:
+def _not_over_time(results: Results, row: Regression, evidence: str) -> str:
     """Size and mean of an error without drift; whether strips differ, as by a misalignment."""
-    size = first(results, "angle_error_summary", angle=row["angle"], frame="ground")
+    size = first(results.angle_error_summary, angle=row.angle, frame="ground")
+    rms, mean = (size.rms_rad, size.mean_rad) if size else (None, None)
     text = (
-        f"Its error is {fmt.angle(size.get('rms_rad'))} (RMS), {fmt.angle(size.get('mean_rad'))} "
+        f"Its error is {fmt.angle(rms)} (RMS), {fmt.angle(mean)} "
         f"on average, and does not follow time ({evidence})."
     )
-    strip, white = row.get("strip_effect_sigma_rad"), row.get("white_noise_sigma_rad")
+    strip, white = row.strip_effect_sigma_rad, row.white_noise_sigma_rad
     if strip is None or white is None or strip < STEADY * white:
         return text
     text += (
         f" It differs from strip to strip (standard deviation {fmt.angle(strip)}) far more than "
         "within the strips"
     )
-    if setting(results, "frame_setting", "ground") != "ground":
+    if results.settings.frame_setting != "ground":
         return f"{text}."
     return (
         f"{text}: a misalignment of the camera, constant about the camera's axes, would look like "
@@ -84,8 +88,8 @@ def _not_over_time(results: Results, row: Row, evidence: str) -> str:
     )
 
 
-def _surely(row: Row) -> str:
-    low, high = row.get("gls_slope_ci95") or (None, None)
+def _surely(row: Regression) -> str:
+    low, high = row.gls_slope_ci95 or (None, None)
     if low is None or high is None:
         return "with correlated errors allowed for, no interval can be given"
     unit = fmt.rate_unit([low, high])
@@ -99,9 +103,9 @@ def _surely(row: Row) -> str:
 
 def _shares(results: Results) -> str:
     tested = [
-        f"{row['angle']} {fmt.fixed(row['r_squared'], 2)}"
-        for row in rows(results, "regression", frame="ground", scope="block")
-        if not fmt.is_missing(row["r_squared"])
+        f"{row.angle} {fmt.fixed(row.r_squared, 2)}"
+        for row in rows(results.regression, frame="ground", scope="block")
+        if not fmt.is_missing(row.r_squared)
     ]
     if not tested:
         return "Whether the angle errors follow time could not be tested."

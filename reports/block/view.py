@@ -1,12 +1,9 @@
-"""Reading the results dictionary (``results.json``): selections of rows, order of strips, words."""
+"""Reading results: order of strips, means over models, names of angles and orientations."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Protocol
 
-from ..document import format as fmt
-
-Results = Mapping[str, Any]
-Row = Mapping[str, Any]
+from posstats.contract.results import ImageAngleErrors, Results
 
 GROUND_ANGLES = ("omega", "phi", "kappa")
 CAMERA_ANGLES = ("pitch", "roll", "yaw")
@@ -24,65 +21,72 @@ FIXED = {
 }
 
 
-def rows(results: Results, key: str, **conditions: object) -> list[Row]:
-    """Rows of one list of the results whose values equal the conditions."""
-    return [
-        row
-        for row in results.get(key) or ()
-        if all(row.get(name) == value for name, value in conditions.items())
-    ]
+class StripMean(Protocol):
+    """Mean parallax over the models of a strip."""
 
+    @property
+    def strip(self) -> str:
+        """Id of the strip."""
+        ...
 
-def first(results: Results, key: str, **conditions: object) -> Row:
-    """The first row that meets the conditions, or an empty row."""
-    return next(iter(rows(results, key, **conditions)), {})
+    @property
+    def n_models(self) -> int:
+        """Models with a value."""
+        ...
+
+    @property
+    def mean_px(self) -> float | None:
+        """Mean over the models."""
+        ...
+
+    @property
+    def mean_mm(self) -> float | None:
+        """The same in mm."""
+        ...
 
 
 def strips(results: Results) -> list[str]:
     """Strip ids in the order of flight (as the images come, then as the tables name them)."""
     named = [
-        row["strip"] for key in ("images", "angle_errors", "parallax") for row in rows(results, key)
+        *(row.strip for row in results.images),
+        *(row.strip for row in results.angle_errors),
+        *(row.strip for row in results.parallax),
     ]
     return list(dict.fromkeys(named))
 
 
 def strips_with_models(results: Results) -> list[str]:
     """Strip ids that form at least one stereo model."""
-    present = {row["strip"] for row in rows(results, "models")}
-    present |= {row["strip"] for row in rows(results, "parallax") if row.get("n_models")}
+    present = {row.strip for row in results.models}
+    present |= {row.strip for row in results.parallax if row.n_models}
     return [strip for strip in strips(results) if strip in present]
 
 
-def mean_over_models(per_strip: Iterable[Row], key: str = "mean_px") -> float | None:
+def mean_in(row: StripMean, unit: str) -> float | None:
+    """Mean parallax of a strip in px or mm."""
+    return row.mean_px if unit == "px" else row.mean_mm
+
+
+def mean_over_models(per_strip: Iterable[StripMean | None], unit: str = "px") -> float | None:
     """Mean over the models of the block: strip means weighted by the models of their strips."""
-    known = [row for row in per_strip if not fmt.is_missing(row.get(key))]
-    weight = sum(row["n_models"] for row in known)
-    return sum(row["n_models"] * row[key] for row in known) / weight if weight else None
+    known = [
+        (row.n_models, mean)
+        for row in per_strip
+        if row and (mean := mean_in(row, unit)) is not None
+    ]
+    weight = sum(n for n, _ in known)
+    return sum(n * mean for n, mean in known) / weight if weight else None
 
 
-def setting(results: Results, name: str, default: str = "") -> str:
-    """One setting of the analysis as text."""
-    return str((results.get("settings") or {}).get(name) or default)
+def error_of(row: ImageAngleErrors, angle: str) -> float | None:
+    """The error of an angle, rad."""
+    error: float | None = getattr(row, f"{angle}_rad")
+    return error
 
 
 def decided_by_strip(results: Results) -> bool:
     """Whether corrections were decided strip by strip, not for the block as a whole."""
-    return setting(results, "scope", "block") == "strip"
-
-
-def verdict(results: Results) -> Row:
-    """The block's verdict in numbers."""
-    return results.get("verdict") or {}
-
-
-def has_mm(results: Results) -> bool:
-    """Whether the pixel size is known, so that parallax can be given in millimetres."""
-    return bool((results.get("units") or {}).get("mm"))
-
-
-def frames(results: Results) -> list[str]:
-    """Frames in which angle errors were regressed, ground first."""
-    return list(dict.fromkeys(row["frame"] for row in rows(results, "regression")))
+    return results.settings.scope == "strip"
 
 
 def angles(frame: str) -> tuple[str, str, str]:
@@ -90,9 +94,8 @@ def angles(frame: str) -> tuple[str, str, str]:
     return CAMERA_ANGLES if frame == "camera" else GROUND_ANGLES
 
 
-def orientation_label(results: Results, orientation: str) -> str:
-    """An orientation or correction in words."""
-    chosen = verdict(results).get("corrected_angles") or []
+def orientation_label(orientation: str, chosen: Sequence[str] = ()) -> str:
+    """An orientation or correction in words; `chosen` are the angles that were corrected."""
     words = {
         "pos": "POS as delivered",
         "selected": f"selected ({' + '.join(chosen)})" if chosen else "selected (none)",

@@ -1,36 +1,15 @@
-"""Tables as objects (columns, units, alignment, caption), and the results as CSV files."""
+"""Tables as objects: columns, units, alignment, caption."""
 
-import csv
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from ..block.view import Results
 from . import format as fmt
 
 Align = Literal["left", "right", "prose"]
 SHORT_ROWS = 16
 LONG_WORD = 24  # letters from which an id may be broken over lines
-
-CSV_TABLES = (
-    "images",
-    "parallax",
-    "models",
-    "error_sources",
-    "angle_errors",
-    "angle_error_summary",
-    "regression",
-    "selection",
-    "corrected_parallax",
-    "check_points",
-    "check_point_residuals",
-    "observability",
-    "frames",
-)
-_CODES = ("notice", "notices", "rotations")  # beside the words that stand for them
-_VECTOR_PARTS = {"slope_ci95": ("low", "high"), "gls_slope_ci95": ("low", "high"), "shift_m": "xyz"}
 
 
 @dataclass(frozen=True)
@@ -141,54 +120,13 @@ def p_column(title: str, values: Iterable[float | None], group: str = "") -> Col
     return Column(title, tuple(fmt.p_value(value) for value in values), group=group)
 
 
-def write_tables(results: Results, folder: Path) -> list[Path]:
-    """Write every list of the results as a CSV file, with all digits and the names of the results.
-
-    Parameters
-    ----------
-    results
-        The results dictionary.
-    folder
-        Where the files go; made if it does not exist.
-
-    Returns
-    -------
-    list of Path
-        The files written: one per list that has rows.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name in CSV_TABLES:
-        records = [_flat(row) for row in results.get(name) or ()]
-        if records:
-            written.append(_write_csv(records, folder / f"{name}.csv"))
-    return written
-
-
-def _write_csv(records: Sequence[Mapping[str, Any]], path: Path) -> Path:
-    names = list(dict.fromkeys(name for record in records for name in record))
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, names, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(records)
-    return path
-
-
-def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """One value per name: intervals and vectors in several columns, lists of words in one."""
-    flat: dict[str, Any] = {}
-    for name, value in row.items():
-        if name in _CODES:
-            continue
-        if name in _VECTOR_PARTS:
-            parts = value or (None,) * len(_VECTOR_PARTS[name])
-            flat |= {
-                f"{name}_{part}": x for part, x in zip(_VECTOR_PARTS[name], parts, strict=True)
-            }
-        elif name == "footprint":
-            corners = value or [(None, None)] * 4
-            for index, (x, y) in enumerate(corners, start=1):
-                flat |= {f"corner{index}_x_m": x, f"corner{index}_y_m": y}
-        else:
-            flat[name] = "; ".join(map(str, value)) if isinstance(value, list) else value
-    return flat
+def pairs(
+    name: str, caption: str, titles: tuple[str, str], items: Iterable[tuple[str, str]]
+) -> Table:
+    """A table of names and values."""
+    listed = list(items)
+    columns = (
+        text_column(titles[0], [key for key, _ in listed]),
+        text_column(titles[1], [value for _, value in listed]),
+    )
+    return Table(name, caption, columns)

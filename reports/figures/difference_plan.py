@@ -18,6 +18,7 @@ from .plan_view import (
     difference_arrows,
     north_and_scale,
     scale_arrow,
+    view_around,
     view_of,
 )
 
@@ -55,7 +56,8 @@ def difference_plan(
     panels = [panel for panel in panels if panel.points]
     if not panels:
         return None
-    view = view_of([vars(place) for place in images or panels[0].points])
+    points = ((point.x_m, point.y_m) for point in panels[0].points)
+    view = view_of(images) if images else view_around(points)
     figure, axes = _panels(view, len(panels))
     for axis, panel in zip(axes, panels, strict=True):
         _images_behind(axis, view, images)

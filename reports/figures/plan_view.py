@@ -13,8 +13,8 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, Transform, blended_transform_factory
 
 from posstats.arrays import Floats
+from posstats.contract.survey import ImagePlace
 
-from ..block.view import Row
 from ..document import format as fmt
 from . import style
 
@@ -77,12 +77,16 @@ class PlanView:
         axis.label_outer()
 
 
-def view_of(places: Sequence[Row]) -> PlanView:
-    """The view that shows places (with their footprints, if they have them) and a margin."""
-    corners = [
-        corner for row in places for corner in (row.get("footprint") or [(row["x_m"], row["y_m"])])
-    ]
-    x, y = np.array(corners, dtype=float).T
+def view_of(images: Sequence[ImagePlace]) -> PlanView:
+    """The view that shows images, with their footprints if they have them, and a margin."""
+    return view_around(
+        corner for image in images for corner in (image.footprint or ((image.x_m, image.y_m),))
+    )
+
+
+def view_around(points: Iterable[Point]) -> PlanView:
+    """The view that shows points and a margin."""
+    x, y = np.array(list(points), dtype=float).T
     margin = PAD * max(min(np.ptp(x), np.ptp(y)), 0.3 * max(np.ptp(x), np.ptp(y)), 1.0)
     return PlanView(
         west=float(x.min() - margin),

@@ -2,15 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
+from posstats.contract.results import Results
 from posstats.papers.drift.areas import AREAS, area_scenario
-from posstats.papers.drift.findings import STRIP, only_row
+from posstats.papers.drift.findings import STRIP, known, only_row
 from posstats.papers.drift.published import Row, published
 from posstats.synthetic import Scenario
 
 Basis = Literal["given", "fitted", "predicted"]
-Results = Mapping[str, Any]
 
 TABLE3_AREA = 1
 _METHODS = ("pos", "independent", "dependent")
@@ -70,7 +70,7 @@ def compare(results: Mapping[int, Results]) -> tuple[Compared, ...]:
     Parameters
     ----------
     results
-        Results dictionaries by area (1, 2, 3); Table 3 is compared with strip `STRIP` of area 1.
+        Results by area (1, 2, 3); Table 3 is compared with strip `STRIP` of area 1.
     """
     return tuple(
         each
@@ -86,12 +86,12 @@ def _table1(area: int, results: Results) -> Iterator[Compared]:
     flown = _as_flown(area_scenario(area), results)
     for quantity, value in flown.items():
         yield place.compared(quantity, row, value, "given")
-    n_tie_points = results["block"]["n_tie_points"]
+    n_tie_points = results.block.n_tie_points
     yield place.compared("n_tie_points", row, n_tie_points, "fitted")
 
 
 def _as_flown(scenario: Scenario, results: Results) -> dict[str, float | None]:
-    camera, flight, block = scenario.camera, scenario.flight, results["block"]
+    camera, flight, block = scenario.camera, scenario.flight, results.block
     return {
         "principal_distance_mm": camera.principal_distance_mm,
         "width_px": camera.width_px,
@@ -100,9 +100,9 @@ def _as_flown(scenario: Scenario, results: Results) -> dict[str, float | None]:
         "scale_denominator": flight.scale_denominator,
         "forward_overlap": flight.forward_overlap,
         "side_overlap": flight.side_overlap,
-        "n_strips": block["n_strips"],
-        "n_images": block["n_images"],
-        "n_control_points": block["n_check_points"],
+        "n_strips": block.n_strips,
+        "n_images": block.n_images,
+        "n_control_points": block.n_check_points,
     }
 
 
@@ -111,13 +111,13 @@ def _table2(area: int, results: Results) -> Iterator[Compared]:
     for row in published(2, area=area):
         place = _Place(2, area, strip=row["strip"])
         for method in _METHODS:
-            strip = only_row(results, "parallax", strip=row["strip"], method=method)
+            strip = only_row(results.parallax, strip=row["strip"], method=method)
             for statistic in _STATISTICS:
                 basis: Basis = "fitted" if statistic == "mean" else "predicted"
                 quantity = f"{method}_{statistic}_mm"
-                yield place.compared(quantity, row, strip[f"{statistic}_mm"], basis)
+                yield place.compared(quantity, row, getattr(strip, f"{statistic}_mm"), basis)
             mean = f"{method}_mean_mm"
-            means.setdefault(mean, []).append((strip["n_models"], row[mean], strip["mean_mm"]))
+            means.setdefault(mean, []).append((strip.n_models, row[mean], known(strip.mean_mm)))
     for mean, strips in means.items():
         n_models, printed, reproduced = zip(*strips, strict=True)
         row = {mean: _weighted(printed, n_models)}
@@ -135,25 +135,24 @@ def _table3(area: int, results: Results) -> Iterator[Compared]:
         return
     for row in published(3):
         place = _Place(3, area, strip=STRIP, angle=row["angle"])
-        line = only_row(results, "regression", angle=row["angle"], scope=STRIP, frame="ground")
+        line = only_row(results.regression, angle=row["angle"], scope=STRIP, frame="ground")
         for quantity, key in _REGRESSION_KEYS.items():
             published_drift = (row["angle"], quantity) == ("omega", "slope_per_t")
             basis: Basis = "given" if published_drift else "predicted"
-            yield place.compared(quantity, row, line[key], basis)
+            yield place.compared(quantity, row, getattr(line, key), basis)
 
 
 def _table4(area: int, results: Results) -> Iterator[Compared]:
     for row in published(4, area=area):
         place = _Place(4, area, orientation=row["orientation"])
         points = only_row(
-            results,
-            "check_points",
+            results.check_points,
             orientation=_ORIENTATIONS[row["orientation"]],
             translation_removed=True,
         )
-        yield place.compared("n_check_points", row, points["n"], "given")
+        yield place.compared("n_check_points", row, points.n, "given")
         for quantity in _TABLE4_QUANTITIES:
-            yield place.compared(quantity, row, points[quantity], "predicted")
+            yield place.compared(quantity, row, getattr(points, quantity), "predicted")
 
 
 @dataclass(frozen=True)

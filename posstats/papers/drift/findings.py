@@ -1,17 +1,16 @@
 """What one simulated area shows, in numbers, and which of the paper's findings it bears out."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Protocol, TypeVar
 
+from posstats.contract.check_points import CheckPointStatistics
+from posstats.contract.results import Regression, Results
 from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.drift.areas import TrueCauses
 from posstats.synthetic import Scenario
-
-Results = Mapping[str, Any]
-Row = Mapping[str, Any]
 
 STRIP = "1"
 """Strip of area 1 that stands for Table 3, whose numbers imply one strip of 60 images."""
@@ -181,75 +180,103 @@ def find(area: int, results: Results, scenario: Scenario, causes: TrueCauses) ->
     area
         1, 2 or 3.
     results
-        Results dictionary of the area, analysed by the paper's rules in the ground frame.
+        Of the area, analysed by the paper's rules in the ground frame.
     scenario
         What was simulated: the true drifts.
     causes
         What the errors of the POS make alone.
     """
-    verdict = results["verdict"]
+    verdict = results.verdict
     points = {name: _check_points(results, name) for name in ("pos", "omega")}
     line = {angle: _line(results, angle) for angle in ANGLE_NAMES}
     return AreaFindings(
         area=area,
-        pos_mm=verdict["raw_mm"],
-        independent_mm=verdict["relative_mm"],
-        dependent_mm=_mean_mm(results, "parallax", method="dependent"),
+        pos_mm=known(verdict.raw_mm),
+        independent_mm=known(verdict.relative_mm),
+        dependent_mm=_mean_mm(results.parallax, method="dependent"),
         angles_mm=causes.angles_mm,
         positions_mm=causes.positions_mm,
         **{
-            f"held_{name}_mm": _mean_mm(results, "error_sources", fixed=name)
+            f"held_{name}_mm": _mean_mm(results.error_sources, fixed=name)
             for name in ("angles", *ANGLE_NAMES)
         },
         **{
-            f"corrected_{name}_mm": _mean_mm(results, "corrected_parallax", corrected=name)
+            f"corrected_{name}_mm": _mean_mm(results.corrected_parallax, corrected=name)
             for name in ANGLE_NAMES
         },
-        strip_omega_r_squared=line["omega"]["r_squared"],
-        strip_phi_p=line["phi"]["p_value"],
-        strip_kappa_p=line["kappa"]["p_value"],
-        corrected_angles="+".join(verdict["corrected_angles"]),
-        pos_horizontal_m=points["pos"]["rmse_horizontal_m"],
-        pos_vertical_m=points["pos"]["rmse_vertical_m"],
-        corrected_horizontal_m=points["omega"]["rmse_horizontal_m"],
-        corrected_vertical_m=points["omega"]["rmse_vertical_m"],
-        ols_covers=_coverage(line, scenario, "slope_ci95"),
-        gls_covers=_coverage(line, scenario, "gls_slope_ci95"),
+        strip_omega_r_squared=known(line["omega"].r_squared),
+        strip_phi_p=known(line["phi"].p_value),
+        strip_kappa_p=known(line["kappa"].p_value),
+        corrected_angles="+".join(verdict.corrected_angles),
+        pos_horizontal_m=known(points["pos"].rmse_horizontal_m),
+        pos_vertical_m=known(points["pos"].rmse_vertical_m),
+        corrected_horizontal_m=known(points["omega"].rmse_horizontal_m),
+        corrected_vertical_m=known(points["omega"].rmse_vertical_m),
+        ols_covers=_coverage({a: row.slope_ci95 for a, row in line.items()}, scenario),
+        gls_covers=_coverage({a: row.gls_slope_ci95 for a, row in line.items()}, scenario),
     )
 
 
-def _line(results: Results, angle: str) -> Row:
+def _line(results: Results, angle: str) -> Regression:
     """Regression of one angle over strip `STRIP`."""
-    return only_row(results, "regression", angle=angle, scope=STRIP, frame="ground")
+    return only_row(results.regression, angle=angle, scope=STRIP, frame="ground")
 
 
-def _coverage(lines: Mapping[str, Row], scenario: Scenario, interval: str) -> float:
-    """Share of the lines whose interval holds the simulated drift."""
+def _coverage(
+    intervals: Mapping[str, tuple[float | None, float | None] | None], scenario: Scenario
+) -> float:
+    """Share of the intervals of slopes that hold the simulated drift."""
     inside = []
-    for angle, line in lines.items():
-        low, high = line[interval]
-        inside.append(bool(low <= getattr(scenario.errors, angle).drift_rad_per_s <= high))
+    for angle, interval in intervals.items():
+        low, high = known(interval)
+        true: float = getattr(scenario.errors, angle).drift_rad_per_s
+        inside.append(known(low) <= true <= known(high))
     return sum(inside) / len(inside)
 
 
-def _check_points(results: Results, orientation: str) -> Row:
-    return only_row(results, "check_points", orientation=orientation, translation_removed=True)
+def _check_points(results: Results, orientation: str) -> CheckPointStatistics:
+    return only_row(results.check_points, orientation=orientation, translation_removed=True)
 
 
-def _mean_mm(results: Results, key: str, **conditions: object) -> float:
+class _StripMean(Protocol):
+    @property
+    def n_models(self) -> int: ...
+
+    @property
+    def mean_mm(self) -> float | None: ...
+
+
+def _mean_mm(strips: Iterable[_StripMean], **conditions: object) -> float:
     """Mean over all models: strip means weighted by the models of their strips."""
-    strips = list(_rows(results, key, conditions))
-    n_models = sum(row["n_models"] for row in strips)
-    return float(sum(row["n_models"] * row["mean_mm"] for row in strips) / n_models)
+    chosen = list(_rows(strips, conditions))
+    n_models = sum(row.n_models for row in chosen)
+    total = sum(row.n_models * known(row.mean_mm) for row in chosen)
+    return float(total / n_models)
 
 
-def only_row(results: Results, key: str, **conditions: object) -> Row:
+T = TypeVar("T")
+
+
+def known(value: T | None) -> T:
+    """A value that the results of a simulated area hold.
+
+    Raises
+    ------
+    ValueError
+        If they lack it.
+    """
+    if value is None:
+        raise ValueError("the results of the area lack a value")
+    return value
+
+
+def only_row(listed: Iterable[T], **conditions: object) -> T:
     """The one row of a list of the results whose values equal the conditions."""
-    (row,) = _rows(results, key, conditions)
+    (row,) = _rows(listed, conditions)
     return row
 
 
-def _rows(results: Results, key: str, conditions: Mapping[str, object]) -> Iterator[Row]:
-    for row in results[key]:
-        if all(row[name] == value for name, value in conditions.items()):
+def _rows(listed: Iterable[T], conditions: Mapping[str, object]) -> Iterator[T]:
+    for row in listed:
+        if all(getattr(row, name) == value for name, value in conditions.items()):
             yield row

@@ -2,13 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from posstats.contract.results import Results
 from posstats.papers.drift.areas import TrueCauses, area_scenario
 from posstats.papers.drift.comparison import Compared, compare
 from posstats.papers.drift.findings import AreaFindings, find
-
-Results = Mapping[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +37,7 @@ def reproduction(
     Parameters
     ----------
     results, causes
-        Results dictionary, and what the errors of the POS make alone, by area.
+        What was found, and what the errors of the POS make alone, by area.
     seed
         Of the run.
     """

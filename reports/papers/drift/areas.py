@@ -7,28 +7,28 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
 from ...block import figures
+from ...block.csv_files import write_tables
 from ...block.folder import write_analysis
-from ...document import table as tables
 from ...document.drawing import Drawing
 from ...output.progress import progress_bar
 from . import figures as paper_figures
 
-_Numbers = tuple[dict[str, Any], TrueCauses]
+_Numbers = tuple[Results, TrueCauses]
 
 _PROCESSES = 2  # the two large areas take nearly all the time
 
 
 @dataclass(frozen=True, eq=False)
 class AreaOutput:
-    """Results dictionary of an area, what its errors make alone, and its Figures 1, 2 and 3."""
+    """Results of an area, what its errors make alone, and its Figures 1, 2 and 3."""
 
-    results: dict[str, Any]
+    results: Results
     causes: TrueCauses
     figures: tuple[Drawing, ...]
 
@@ -84,8 +84,8 @@ def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
     return write_analysis(analysis, folder, created=created), causes
 
 
-def _written(area: int, values: dict[str, Any], folder: Path) -> tuple[Drawing, ...]:
-    tables.write_tables(values, folder / "tables")
+def _written(area: int, values: Results, folder: Path) -> tuple[Drawing, ...]:
+    write_tables(values, folder / "tables")
     figures.write_figures(values, folder / "figures")
     return paper_figures.draw_area(area, values)
 

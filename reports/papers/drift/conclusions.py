@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from posstats.contract.results import Results
 from posstats.papers.drift.comparison import TABLE3_AREA
-from posstats.papers.drift.findings import AreaFindings
+from posstats.papers.drift.findings import AreaFindings, known, only_row
 from posstats.papers.drift.published import printed_gain
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated, share, share_interval
 
-from ...block.view import Results, first
 from ...document import format as fmt
 
 ORTHOPHOTO_H_M = 5.0
@@ -95,8 +95,8 @@ def _only_omega_is_linear(run: Reproduction) -> Conclusion:
 
 
 def _block_r_squared(results: Results) -> str:
-    row = first(results, "regression", angle="omega", scope="block", frame="ground")
-    return fmt.fixed(row["r_squared"], 3)
+    row = only_row(results.regression, angle="omega", scope="block", frame="ground")
+    return fmt.fixed(row.r_squared, 3)
 
 
 def _omega_alone_is_chosen(run: Reproduction) -> Conclusion:
@@ -169,8 +169,8 @@ def _pair(horizontal: float, vertical: float) -> str:
 
 def _orthophoto(run: Reproduction) -> Conclusion:
     def rmse(results: Results, orientation: str, *, removed: bool) -> float:
-        row = first(results, "check_points", orientation=orientation, translation_removed=removed)
-        return float(row["rmse_horizontal_m"])
+        row = only_row(results.check_points, orientation=orientation, translation_removed=removed)
+        return known(row.rmse_horizontal_m)
 
     after = {area: rmse(each, "omega", removed=False) for area, each in run.results.items()}
     return Conclusion(

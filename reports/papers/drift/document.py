@@ -47,11 +47,11 @@ def build(
 
 
 def _subtitle(run: Reproduction) -> str:
-    blocks = [results["block"] for results in run.results.values()]
+    blocks = [results.block for results in run.results.values()]
     counted = {"n_images": "images", "n_strips": "strips", "n_models": "stereo models",
                "n_tie_points": "tie points"}  # fmt: skip
     return " · ".join(
-        f"{fmt.count(sum(block[key] for block in blocks))} {words}"
+        f"{fmt.count(sum(getattr(block, key) for block in blocks))} {words}"
         for key, words in counted.items()
     )
 

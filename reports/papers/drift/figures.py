@@ -2,9 +2,19 @@
 
 from matplotlib.axes import Axes
 
+from posstats.contract.results import Regression, Results
+from posstats.papers.drift.findings import known, only_row
+
 from ...block.bar_figures import Bars, bar_figure, corrections, held_angles
-from ...block.line_figures import Panel, generalised, legend_entries, ordinary, used_errors
-from ...block.view import GROUND_ANGLES, Results, Row, first, strips, strips_with_models
+from ...block.line_figures import (
+    Panel,
+    errors_of,
+    generalised,
+    legend_entries,
+    ordinary,
+    used_errors,
+)
+from ...block.view import GROUND_ANGLES, strips, strips_with_models
 from ...document import format as fmt
 from ...document.drawing import Drawing
 from ...figures import style
@@ -18,7 +28,7 @@ def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
     area
         Number of the area; part of the figures' names.
     results
-        Results dictionary of the simulated area, in the ground frame with a block-wide line.
+        Of the simulated area, in the ground frame with a block-wide line.
 
     Returns
     -------
@@ -88,23 +98,25 @@ def _regression(area: int, results: Results) -> Drawing:
 
 def _angle_panel(axis: Axes, results: Results, angle: str) -> None:
     data = used_errors(results, angle)
-    errors = [row[f"{angle}_rad"] for row in data]
+    errors = errors_of(data, angle)
     panel = Panel(axis, fmt.angle_unit(errors), _start(results))
     for strip, (colour, _) in style.strip_style(strips(results)).items():
-        part = [row for row in data if row["strip"] == strip]
-        panel.points([row["time_s"] for row in part], [row[f"{angle}_rad"] for row in part], "_",
+        part = [row for row in data if row.strip == strip]
+        panel.points([row.time_s for row in part], errors_of(part, angle), "_",
                      style.dots(colour, 2.2))  # fmt: skip
     line = _line(results, angle)
-    panel.fit([row["time_s"] for row in data], ordinary(line), generalised(line))
+    panel.fit([row.time_s for row in data], ordinary(line), generalised(line))
     panel.keep_large(errors)
     panel.label("error")
     axis.set_title(_test(angle, line), loc="left", pad=14.0 if angle == GROUND_ANGLES[0] else 5.0)
 
 
-def _test(angle: str, line: Row) -> str:
+def _test(angle: str, line: Regression) -> str:
     """What the regression of an angle says, for the head of its panel."""
-    ordinary_p, generalised_p = fmt.p_phrase(line["p_value"]), fmt.p_phrase(line["gls_p_value"])
-    return f"{angle}: {_r_squared(line['r_squared'])}, {ordinary_p} (OLS), {generalised_p} (GLS)"
+    ordinary_p, generalised_p = fmt.p_phrase(line.p_value), fmt.p_phrase(line.gls_p_value)
+    return (
+        f"{angle}: {_r_squared(known(line.r_squared))}, {ordinary_p} (OLS), {generalised_p} (GLS)"
+    )
 
 
 def _r_squared(value: float) -> str:
@@ -116,12 +128,12 @@ def _r_squared(value: float) -> str:
 
 def _drifts(results: Results) -> str:
     """How far the line of each angle goes in the time of the block, and the scatter about it."""
-    times = [row["time_s"] for row in results["angle_errors"]]
+    times = [row.time_s for row in results.angle_errors]
     parts = []
     for angle in GROUND_ANGLES:
         line = _line(results, angle)
-        change = abs(line["slope_rad_per_s"]) * (max(times) - min(times))
-        scatter = _small_angle(line["sigma_rad"])
+        change = abs(known(line.slope_rad_per_s)) * (max(times) - min(times))
+        scatter = _small_angle(known(line.sigma_rad))
         parts.append(f"{_small_angle(change)} for {angle} (scatter about it {scatter})")
     return f"From the first exposure to the last the OLS lines change by {fmt.joined(parts)}."
 
@@ -131,18 +143,18 @@ def _small_angle(value_rad: float) -> str:
     return fmt.with_unit(unit.scaled(value_rad), unit.name)
 
 
-def _line(results: Results, angle: str) -> Row:
-    return first(results, "regression", frame="ground", angle=angle, scope="block")
+def _line(results: Results, angle: str) -> Regression:
+    return only_row(results.regression, frame="ground", angle=angle, scope="block")
 
 
 def _start(results: Results) -> float:
-    return float(min(row["time_s"] for row in results["angle_errors"]))
+    return min(row.time_s for row in results.angle_errors)
 
 
 def _name_strips(axis: Axes, results: Results) -> None:
     """Ids of the strips over a panel, in the middle of their time."""
     for k, strip in enumerate(strips(results)):
-        times = [row["time_s"] for row in results["angle_errors"] if row["strip"] == strip]
+        times = [row.time_s for row in results.angle_errors if row.strip == strip]
         place = (min(times) + max(times)) / 2.0 - _start(results)
         axis.text(place, 1.02, f"strip {strip}" if k == 0 else strip, ha="center", va="bottom",
                   transform=axis.get_xaxis_transform(), fontsize=7.5)  # fmt: skip

@@ -3,7 +3,7 @@
 import numpy as np
 
 from posstats.papers.drift.comparison import TABLE3_AREA
-from posstats.papers.drift.findings import ALPHA, STRIP
+from posstats.papers.drift.findings import ALPHA, STRIP, known, only_row
 from posstats.papers.drift.published import (
     consistent_residual_df,
     implied_scatter,
@@ -14,9 +14,9 @@ from posstats.papers.drift.published import (
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from ...block.view import first, rows
 from ...document import format as fmt
 from ...document.content import Bullets, Labelled, Paragraph, Part
+from ...document.rows import rows
 from . import tables as paper_tables
 
 _SAME_DIMENSIONS = (
@@ -58,11 +58,11 @@ def _crossing(run: Reproduction, df: int) -> str:
     """The three printed lines cross zero close together, where omega explains next to nothing."""
     times = sorted(each.zero_crossing_t for each in recomputed(df))
     results = run.results[TABLE3_AREA]
-    exposures = [row["time_s"] for row in rows(results, "images", strip=STRIP)]
-    omega = first(results, "angle_error_summary", angle="omega", frame="ground")
+    exposures = [row.time_s for row in rows(results.images, strip=STRIP)]
+    omega = only_row(results.angle_error_summary, angle="omega", frame="ground")
     (line,) = published(3, angle="omega")
     largest_rad = line["slope_per_t"] * (times[-1] - times[0])
-    mm_per_rad = run.findings[TABLE3_AREA].pos_mm / abs(omega["mean_rad"])
+    mm_per_rad = run.findings[TABLE3_AREA].pos_mm / abs(known(omega.mean_rad))
     (strip,) = published(2, area=TABLE3_AREA, strip=STRIP)
     return (
         f"The three lines of Table 3 cross zero close together (t = {fmt.count(times[0])} to "
@@ -78,7 +78,7 @@ def _crossing(run: Reproduction, df: int) -> str:
 def _scatter(run: Reproduction) -> str:
     """What the printed lines imply for the scatter of phi and kappa."""
     results = run.results[TABLE3_AREA]
-    exposures = [row["time_s"] for row in rows(results, "images", strip=STRIP)]
+    exposures = [row.time_s for row in rows(results.images, strip=STRIP)]
     implied = fmt.joined(
         f"{fmt.with_unit(1e3 * implied_scatter(angle, float(np.std(exposures))), 'mrad', 2)} for "
         f"{angle}"
@@ -148,12 +148,12 @@ def _too_sure(run: Reproduction) -> str:
     tested = [
         row
         for results in run.results.values()
-        for row in rows(results, "regression", frame="ground")
-        if row["angle"] != "omega"
+        for row in rows(results.regression, frame="ground")
+        if row.angle != "omega"
     ]
-    ordinary = sum(row["p_value"] < ALPHA for row in tested)
-    general = sum(row["gls_p_value"] < ALPHA for row in tested)
-    kappa = first(run.results[1], "regression", angle="kappa", scope="block", frame="ground")
+    ordinary = sum(known(row.p_value) < ALPHA for row in tested)
+    general = sum(known(row.gls_p_value) < ALPHA for row in tested)
+    kappa = only_row(run.results[1].regression, angle="kappa", scope="block", frame="ground")
     found = repeated()[TABLE3_AREA]
     shares = [
         float(np.mean([getattr(each, name) for each in found]))
@@ -172,7 +172,7 @@ def _too_sure(run: Reproduction) -> str:
         "larger than what the tie points add. Of the "
         f"{len(tested)} lines of phi and kappa, whose true drift is zero, OLS calls {ordinary} "
         f"significant at the 5 % level, GLS {general} (kappa over the block of area 1: OLS "
-        f"{fmt.p_phrase(kappa['p_value'])}, GLS {fmt.p_phrase(kappa['gls_p_value'])}). But with "
+        f"{fmt.p_phrase(kappa.p_value)}, GLS {fmt.p_phrase(kappa.gls_p_value)}). But with "
         "fewer tie points or a better POS OLS is far too sure of itself: along a strip its 95 % "
         "intervals then hold the truth in only a quarter of all cases (docs/method.md of the "
         "package). So the block's report believes GLS where the two differ."
@@ -181,11 +181,11 @@ def _too_sure(run: Reproduction) -> str:
 
 def _observable(run: Reproduction) -> str:
     omega = {
-        area: first(results, "angle_error_summary", angle="omega", frame="ground")
+        area: only_row(results.angle_error_summary, angle="omega", frame="ground")
         for area, results in run.results.items()
     }
     sigmas = fmt.joined(
-        f"{fmt.fixed(1e6 * row['median_sigma_rad'], 1)}\u00a0µrad in area {area}"
+        f"{fmt.fixed(1e6 * known(row.median_sigma_rad), 1)}\u00a0µrad in area {area}"
         for area, row in omega.items()
     )
     return (
@@ -199,9 +199,9 @@ def _observable(run: Reproduction) -> str:
 
 
 def _mean_removed(run: Reproduction) -> str:
-    row = first(run.results[TABLE3_AREA], "check_points", orientation="pos",
-                translation_removed=False)  # fmt: skip
-    shift = float(np.hypot(*row["shift_m"][:2]))
+    row = only_row(run.results[TABLE3_AREA].check_points, orientation="pos",
+                   translation_removed=False)  # fmt: skip
+    shift = float(np.hypot(*known(row.shift_m)[:2]))
     return (
         "The paper removes the mean difference before it judges check points. In area 1 the "
         f"constant part of the omega error shifts the whole block by {fmt.with_unit(shift, 'm')}, "

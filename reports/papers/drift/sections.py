@@ -3,15 +3,14 @@
 from collections.abc import Mapping, Sequence
 
 from posstats.papers.drift.areas import area_scenario, area_seed
+from posstats.papers.drift.findings import only_row
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated
 
-from ...block import statistics_tables
-from ...block.view import first
 from ...document import format as fmt
 from ...document.content import Content, Labelled, Paragraph, Part
 from ...document.drawing import Drawing
-from ...document.table import Table, prose_column, text_column
+from ...document.table import Table, pairs, prose_column, text_column
 from . import tables
 from .conclusions import Conclusion
 from .remarks import differences, printed_numbers
@@ -186,10 +185,10 @@ def _lettered(number: int, figures: Figures) -> list[Labelled]:
 
 def _check_points(run: Reproduction) -> Part:
     shifts = {
-        area: first(results, "check_points", orientation="pos", translation_removed=False)
+        area: only_row(results.check_points, orientation="pos", translation_removed=False)
         for area, results in run.results.items()
     }
-    kept = fmt.joined(fmt.with_unit(row["rmse_horizontal_m"], "m") for row in shifts.values())
+    kept = fmt.joined(fmt.with_unit(row.rmse_horizontal_m, "m") for row in shifts.values())
     text = (
         "Check points are intersected from all images that show them and compared with their given "
         "coordinates. As the paper says it did, the mean difference is removed first; as it is "
@@ -215,9 +214,9 @@ def _provenance(run: Reproduction) -> Part:
         (f"area {area}: scenario and seed", f"area{area}.toml, seed {area_seed(run.seed, area)}")
         for area in run.results
     ]
-    versions = [(str(name), str(version)) for name, version in run.results[1]["versions"].items()]
+    versions = [(str(name), str(version)) for name, version in run.results[1].versions.items()]
     settings = [
-        (name, str(run.results[1]["settings"][name]))
+        (name, str(getattr(run.results[1].settings, name)))
         for name in ("rules", "scope", "errors", "frame", "robust")
     ]
     text = (
@@ -231,9 +230,9 @@ def _provenance(run: Reproduction) -> Part:
         "Inputs, settings, versions",
         (
             Paragraph(text),
-            Labelled("H", statistics_tables.pairs(
+            Labelled("H", pairs(
                 "settings", "Areas, seeds and settings.", ("Item", "Value"), [*seeds, *settings])),
-            Labelled("I", statistics_tables.pairs(
+            Labelled("I", pairs(
                 "versions", "Software.", ("Package", "Version"), versions)),
         ),
     )  # fmt: skip

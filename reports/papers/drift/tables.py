@@ -4,13 +4,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
 from posstats.papers.drift.comparison import TABLE3_AREA, Compared
+from posstats.papers.drift.findings import known
 from posstats.papers.drift.published import recomputed
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.papers.drift.seeds import repeated, share, share_interval
 from posstats.synthetic import Scenario
 
-from ...block.view import rows
 from ...document import format as fmt
+from ...document.rows import rows
 from ...document.table import Column, Table, count_column, number_column, p_column, text_column
 
 MM_DECIMALS = 4  # as the paper prints them
@@ -221,19 +222,19 @@ def _probability(value: float | None) -> str:
 def lines(run: Reproduction) -> Table:
     """Regressions of all angles, of every block and strip."""
     made = [(area, row) for area, results in run.results.items()
-            for row in rows(results, "regression", frame="ground")]  # fmt: skip
+            for row in rows(results.regression, frame="ground")]  # fmt: skip
     unit, rate = fmt.MICRORADIAN, fmt.NANORADIAN_PER_SECOND
     columns = (
         text_column("Area", [str(area) for area, _ in made]),
-        text_column("Block or strip", [row["scope"] for _, row in made]),
-        text_column("Angle", [row["angle"] for _, row in made]),
-        count_column("n", [row["n"] for _, row in made]),
-        number_column("a₀", unit.name, [unit.scaled(row["intercept_rad"]) for _, row in made]),
-        number_column("a₁", rate.name, [rate.scaled(row["slope_rad_per_s"]) for _, row in made]),
-        Column("R²", tuple(_r_squared(row["r_squared"]) for _, row in made)),
-        Column("F₀", tuple(_statistic(row["f_statistic"]) for _, row in made)),
-        p_column("p", [row["p_value"] for _, row in made]),
-        p_column("GLS p", [row["gls_p_value"] for _, row in made]),
+        text_column("Block or strip", [row.scope for _, row in made]),
+        text_column("Angle", [row.angle for _, row in made]),
+        count_column("n", [row.n for _, row in made]),
+        number_column("a₀", unit.name, [unit.scaled(row.intercept_rad) for _, row in made]),
+        number_column("a₁", rate.name, [rate.scaled(row.slope_rad_per_s) for _, row in made]),
+        Column("R²", tuple(_r_squared(known(row.r_squared)) for _, row in made)),
+        Column("F₀", tuple(_statistic(row.f_statistic) for _, row in made)),
+        p_column("p", [row.p_value for _, row in made]),
+        p_column("GLS p", [row.gls_p_value for _, row in made]),
     )
     caption = (
         "Simulated: regression y = a₀ + a₁ (t − t₀) of the angle errors for every block and every "
@@ -242,7 +243,7 @@ def lines(run: Reproduction) -> Table:
     )
     notes = ("n: images; F₀ has 1 and n − 2 degrees of freedom. Null hypothesis of p: no drift; it "
              "is true for phi and kappa.",)  # fmt: skip
-    block = frozenset(k for k, (_, row) in enumerate(made) if row["scope"] == "block")
+    block = frozenset(k for k, (_, row) in enumerate(made) if row.scope == "block")
     return Table("lines", caption, columns, notes, block)
 
 

@@ -7,10 +7,9 @@ from posstats.papers.wucaps.reproduction import Reproduction
 from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import flight_seed
 
-from ...block import statistics_tables
 from ...document import format as fmt
 from ...document.content import Bullets, Content, Paragraph, Part
-from ...document.table import Table, prose_column, text_column
+from ...document.table import Table, pairs, prose_column, text_column
 from ..drift.conclusions import Conclusion
 from . import figures as wucaps_figures
 from . import tables
@@ -298,9 +297,9 @@ def _provenance(run: Reproduction, versions: Sequence[tuple[str, str]]) -> Part:
         "Inputs, settings, versions",
         (
             Paragraph(text),
-            statistics_tables.pairs("settings", "Blocks, seeds and settings.", ("Item", "Value"),
+            pairs("settings", "Blocks, seeds and settings.", ("Item", "Value"),
                                     [*seeds, *recommended]),
-            statistics_tables.pairs("versions", "Software.", ("Package", "Version"),
+            pairs("versions", "Software.", ("Package", "Version"),
                                     list(versions)),
         ),
     )  # fmt: skip

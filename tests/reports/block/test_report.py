@@ -1,23 +1,24 @@
 """The report as its readers meet it: HTML, PDF, tables and figures made from results alone."""
 
-import copy
 import csv
 import re
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
-from report_results import area_results, assert_schema, coarse_results
+from report_results import area_results, coarse_results, with_rows
 
+from posstats.contract.survey import InputFile
 from posstats.errors import PosstatsError
 from posstats.reports.block import document as block_document
 from posstats.reports.block import figures, verdict
+from posstats.reports.block.csv_files import write_tables
 from posstats.reports.block.report import write_report
 from posstats.reports.block.summary import summary
-from posstats.reports.document import table as tables
 from posstats.reports.figures.plan_view import PlanView
 from posstats.reports.pages import html, pdf
 
@@ -26,16 +27,12 @@ HOSTILE = "<script>alert(1)</script> \"a\", 'b' & $x_1$"
 
 @pytest.fixture(scope="module")
 def area():
-    results = area_results(per_strip=12)
-    assert_schema(results)
-    return results
+    return area_results(per_strip=12)
 
 
 @pytest.fixture(scope="module")
 def coarse():
-    results = coarse_results()
-    assert_schema(results)
-    return results
+    return coarse_results()
 
 
 @pytest.fixture(scope="module")
@@ -72,32 +69,30 @@ def test_verdict_of_a_coarse_pos_says_so_and_how_much_each_angle_errs(coarse):
 
 
 def test_verdict_of_a_block_without_models_says_that_nothing_is_known(area):
-    empty = area | {"verdict": dict.fromkeys(area["verdict"])}
+    nothing = replace(area.verdict, raw_px=None, relative_px=None, corrected_px=None)
+    empty = replace(area, verdict=nothing)
     assert "No vertical parallax could be computed" in verdict.paragraph(empty)
 
 
 def test_verdict_gives_the_cause_its_share(area):
-    results = copy.deepcopy(area)
-    results["verdict"] |= {"cause": "kappa", "cause_share": 0.5}
+    results = replace(area, verdict=replace(area.verdict, cause="kappa", cause_share=0.5))
     said = plain(verdict.paragraph(results))
     assert "Most of it comes from kappa" in said
     assert "with all three angles held 22." in said
 
 
 def test_check_points_that_none_could_be_intersected_make_no_table(area):
-    results = copy.deepcopy(area)
-    for row in results["check_points"]:
-        row.update(dict.fromkeys(row.keys() - {"orientation", "translation_removed", "n"}), n=0)
-    results["check_point_residuals"] = []
+    numbers = [each.name for each in fields(area.check_points[0]) if each.name.endswith("_m")]
+    none = dict.fromkeys(numbers) | {"n": 0}
+    results = with_rows(area, "check_points", lambda row: replace(row, **none))
+    results = replace(results, check_point_residuals=())
     text = html.render(block_document.build(results))
     assert 'id="table-check_points_shift_kept"' not in text
     assert "No check point could be intersected" in text
 
 
 def test_verdict_names_an_interval_that_includes_zero(area):
-    results = copy.deepcopy(area)
-    for row in results["regression"]:
-        row["gls_slope_ci95"] = [-1e-7, 9e-7]
+    results = with_rows(area, "regression", lambda r: replace(r, gls_slope_ci95=(-1e-7, 9e-7)))
     assert "includes zero, so a drift is not proven" in verdict.paragraph(results)
 
 
@@ -127,15 +122,15 @@ def test_simulated_blocks_are_marked_and_real_ones_are_not(page, coarse_page):
 
 
 def test_hostile_ids_appear_as_text(area):
-    results = copy.deepcopy(area)
-    results["block"]["name"] = HOSTILE
+    results = area
     for key in ("images", "models", "angle_errors", "parallax", "error_sources"):
-        for row in results[key]:
-            row["strip"] = HOSTILE if row["strip"] == "1" else row["strip"]
-    for row in results["models"]:
-        row["left"] = HOSTILE
-    results["warnings"] = [HOSTILE]
-    results["inputs"] = [{"file": HOSTILE, "sha256": "0"}]
+        results = with_rows(
+            results, key, lambda row: replace(row, strip=HOSTILE) if row.strip == "1" else row
+        )
+    results = with_rows(results, "models", lambda row: replace(row, left=HOSTILE))
+    inputs = (InputFile(file=HOSTILE, sha256="0"),)
+    block = replace(area.block, name=HOSTILE, inputs=inputs)
+    results = replace(results, block=block, warnings=(HOSTILE,))
     parsed = read(html.render(block_document.build(results)))
     assert "script" not in parsed.tags
     texts = [text.strip() for text in parsed.texts]
@@ -154,8 +149,9 @@ def test_no_number_has_more_digits_than_anyone_reads(page):
 
 
 def test_empty_lists_still_make_a_report(area):
-    lists = {name: [] for name, value in area.items() if isinstance(value, list)}
-    text = html.render(block_document.build(area | lists | {"expected_noise_px": None}))
+    names = [each.name for each in fields(area) if isinstance(getattr(area, each.name), tuple)]
+    empty = replace(area, expected_noise_px=None, **dict.fromkeys(names, ()))
+    text = html.render(block_document.build(empty))
     assert "no check points" in text.lower() or "not tested" in text
 
 
@@ -186,18 +182,18 @@ def test_figures_and_page_are_the_same_bytes_every_time(area, page):
 
 
 def test_csv_tables_keep_every_row_and_every_digit(area, tmp_path):
-    tables.write_tables(area, tmp_path)
+    write_tables(area, tmp_path)
     with (tmp_path / "models.csv").open(encoding="utf-8", newline="") as stream:
         read_back = list(csv.DictReader(stream))
-    assert len(read_back) == len(area["models"])
-    assert [float(row["pos_px"]) for row in read_back] == [m["pos_px"] for m in area["models"]]
+    assert len(read_back) == len(area.models)
+    assert [float(row["pos_px"]) for row in read_back] == [m.pos_px for m in area.models]
     with (tmp_path / "regression.csv").open(encoding="utf-8", newline="") as stream:
         first = next(csv.DictReader(stream))
-    assert float(first["slope_ci95_low"]) == area["regression"][0]["slope_ci95"][0]
+    assert float(first["slope_ci95_low"]) == area.regression[0].slope_ci95[0]
 
 
 def test_csv_tables_leave_missing_values_empty(coarse, tmp_path):
-    tables.write_tables(coarse, tmp_path)
+    write_tables(coarse, tmp_path)
     with (tmp_path / "parallax.csv").open(encoding="utf-8", newline="") as stream:
         assert all(row["mean_mm"] == "" for row in csv.DictReader(stream))
 
@@ -224,7 +220,7 @@ def test_every_pdf_page_is_numbered_headed_and_marked(pdf_file, area):
     assert len(pages) >= 6
     for number, text in enumerate(pages, start=1):
         assert f"page {number} of {len(pages)}" in text
-        assert area["block"]["name"] in text
+        assert area.block.name in text
         assert "Simulated data" in text
 
 
@@ -269,23 +265,21 @@ def test_a_browser_sees_no_error_no_request_and_no_sideways_scrolling(
 
 def at_strips(results):
     """The results as if decided strip by strip: omega linear in strip 2, nothing else."""
-    made = copy.deepcopy(results)
-    made["settings"]["scope"] = "strip"
-    scopes = dict.fromkeys(row["strip"] for row in made["images"])
-    made["selection"] = [
-        row | {"scope": scope, "correct": linear, "form": "linear" if linear else "none"}
-        for scope in scopes
-        for row in made["selection"]
-        for linear in (row["angle"] == "omega" and scope == "2",)
+    decided = [
+        replace(row, scope=scope, correct=linear, form="linear" if linear else "none")
+        for scope in dict.fromkeys(image.strip for image in results.images)
+        for row in results.selection
+        for linear in (row.angle == "omega" and scope == "2",)
     ]
-    return made
+    by_strip = replace(results.settings, scope="strip")
+    return replace(results, settings=by_strip, selection=tuple(decided))
 
 
 def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area):
     results = at_strips(area)
     text = html.render(block_document.build(results))
     matrix = re.search(r'id="table-decisions_by_strip".*?</table>', text, re.DOTALL)[0]
-    assert matrix.count("<tr>") == 1 + results["block"]["n_strips"]
+    assert matrix.count("<tr>") == 1 + results.block.n_strips
     reasons = re.search(r'id="table-decisions".*?</table>', text, re.DOTALL)[0]
     assert reasons.count("<tr>") == 2
     assert "omega (linear in time in 1 of 5 strips) was corrected" in verdict.paragraph(results)
@@ -295,59 +289,62 @@ def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area)
 
 
 def test_verdict_of_a_constant_in_the_camera_frame_gives_its_size(area):
-    results = copy.deepcopy(area)
-    results["settings"] |= {"frame": "camera", "rules": "strict"}
-    for key in ("regression", "angle_error_summary", "selection"):
-        names = dict(zip(("omega", "phi", "kappa"), ("pitch", "roll", "yaw"), strict=True))
-        results[key] += [
-            row | {"angle": names[row["angle"]], "frame": "camera"} for row in area[key]
-        ]
-    results["verdict"]["corrected_angles"] = ["pitch"]
-    results["selection"] = [row for row in results["selection"] if row["frame"] == "camera"]
-    results["selection"][0]["form"] = "constant"
+    names = {"omega": "pitch", "phi": "roll", "kappa": "yaw"}
+    camera = {
+        key: tuple(replace(r, angle=names[r.angle], frame="camera") for r in getattr(area, key))
+        for key in ("regression", "angle_error_summary", "selection")
+    }
+    first, *others = camera["selection"]
+    results = replace(
+        area,
+        settings=replace(area.settings, frame="camera", rules="strict"),
+        verdict=replace(area.verdict, corrected_angles=("pitch",)),
+        regression=(*area.regression, *camera["regression"]),
+        angle_error_summary=(*area.angle_error_summary, *camera["angle_error_summary"]),
+        selection=(replace(first, form="constant"), *others),
+    )
     said = plain(verdict.paragraph(results))
-    size = results["regression"][0]["constant_rad"] * 1e3
+    size = results.regression[0].constant_rad * 1e3
     assert f"pitch (constant of {size:.1f} mrad" in said
     assert "roll and yaw stayed as delivered" in said
 
 
 def test_verdict_of_strips_that_differ_points_to_the_camera_frame(area):
-    results = copy.deepcopy(area)
-    for row in results["regression"]:
-        row |= {"p_value": 0.6, "strip_effect_sigma_rad": 0.02, "white_noise_sigma_rad": 2e-5}
+    differ = {"p_value": 0.6, "strip_effect_sigma_rad": 0.02, "white_noise_sigma_rad": 2e-5}
+    results = with_rows(area, "regression", lambda row: replace(row, **differ))
     assert "--frame auto --rules strict" in verdict.paragraph(results)
-    results["settings"]["frame_setting"] = "auto"
+    results = replace(results, settings=replace(area.settings, frame_setting="auto"))
     assert "differs from strip to strip" in verdict.paragraph(results)
     assert "--frame auto" not in verdict.paragraph(results)
 
 
 def test_verdict_says_what_a_poor_correction_leaves_in_the_angles(area):
-    results = copy.deepcopy(area)
-    results["verdict"]["corrected_px"] = 4.0
+    results = replace(area, verdict=replace(area.verdict, corrected_px=4.0))
     said = plain(verdict.paragraph(results))
-    sigma = [round(row["sigma_rad"] * 1e6) for row in area["regression"] if row["scope"] == "block"]
+    sigma = [round(row.sigma_rad * 1e6) for row in area.regression if row.scope == "block"]
     assert re.search(rf"What is left in the angles is {sigma[0] // 10}\d µrad in omega", said)
     assert "scatter from image to image about the lines" in said
 
 
 def test_angles_known_less_well_than_the_pos_claims_are_named(area):
-    results = copy.deepcopy(area)
-    results["settings"]["angle_rad"] = 1e-4
-    assert "less well than the POS" not in html.render(block_document.build(results))
-    for row in results["angle_error_summary"]:
-        row["median_sigma_rad"] = 3e-4 if row["angle"] == "omega" else 1e-5
+    assert "less well than the POS" not in html.render(block_document.build(area))
+    sigma = {"omega": 3e-4, "phi": 1e-5, "kappa": 1e-5}
+    results = with_rows(
+        area, "angle_error_summary", lambda row: replace(row, median_sigma_rad=sigma[row.angle])
+    )
     page = html.render(block_document.build(results))
     assert "Here they give omega only to 300 µrad (0.0172°)" in plain(page)
+
+
+def stretched(image):
+    corners = tuple((x, 8.0 * y) for x, y in image.footprint)
+    return replace(image, y_m=8.0 * image.y_m, footprint=corners)
 
 
 def test_a_long_block_is_turned_and_its_arrow_says_so(area):
     drawn = figures.draw(area)["plan"]
     assert "N →" not in drawn.svg
-    results = copy.deepcopy(area)
-    for row in results["images"]:
-        row["y_m"] *= 8.0
-        row["footprint"] = [[x, 8.0 * y] for x, y in row["footprint"]]
-    turned = figures.draw(results)["plan"]
+    turned = figures.draw(with_rows(area, "images", stretched))["plan"]
     assert "N →" in turned.svg
     assert "north to the right" in turned.caption
 

@@ -1,15 +1,14 @@
 """Bars and regressions, as the paper's reproduction draws them, show what the results say."""
 
-import copy
 import re
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.textpath import TextPath
-from report_results import ANGLES, area_results
+from report_results import ANGLES, area_results, with_rows
 from scipy import stats
 
 from posstats.reports.block import bar_figures as figure_parallax
@@ -24,11 +23,12 @@ HELD = ("angles", "omega", "phi", "kappa", "none")
 
 @pytest.fixture(scope="module")
 def results():
+    def correlated(row):
+        covariance = 0.4 * row.intercept_se_rad * row.slope_se
+        return replace(row, cov_intercept_slope=covariance) if row.scope == "block" else row
+
     made = area_results(n_strips=N_STRIPS, per_strip=PER_STRIP)
-    for row in made["regression"]:
-        if row["scope"] == "block":
-            row["cov_intercept_slope"] = 0.4 * row["intercept_se_rad"] * row["slope_se"]
-    return made
+    return with_rows(made, "regression", correlated)
 
 
 @pytest.fixture(scope="module")
@@ -83,9 +83,9 @@ def bars(drawing):
 
 def means(results, key, **which):
     return [
-        row["mean_mm"]
-        for row in results[key]
-        if all(row[name] == value for name, value in which.items())
+        row.mean_mm
+        for row in getattr(results, key)
+        if all(getattr(row, name) == value for name, value in which.items())
     ]
 
 
@@ -109,10 +109,11 @@ def test_bars_show_the_parallax_with_one_angle_corrected_and_no_selection(result
 
 
 def test_a_strip_without_a_value_has_no_bar(results):
-    lacking = copy.deepcopy(results)
-    for row in lacking["error_sources"]:
-        if row["strip"] == "2" and row["fixed"] == "omega":
-            row["mean_mm"] = None
+    def without(row):
+        lacks = row.strip == "2" and row.fixed == "omega"
+        return replace(row, mean_mm=None) if lacks else row
+
+    lacking = with_rows(results, "error_sources", without)
     tops, grey = bars(draw_area(1, lacking)[0])
     assert np.isfinite(tops).sum() == np.isfinite(grey).sum() == 5 * N_STRIPS - 1
 
@@ -130,8 +131,10 @@ def test_dots_and_lines_are_those_of_the_results(results, drawn):
     solid, dashed = _lines(picture(drawn[1]))
     for angle, ols, gls in zip(ANGLES, solid, dashed, strict=True):
         to_time, to_error, dots = _scales(results, drawn[1], angle)
-        rows = results["angle_errors"]
-        time, error = (np.array([row[key] for row in rows]) for key in ("time_s", f"{angle}_rad"))
+        rows = results.angle_errors
+        time, error = (
+            np.array([getattr(row, key) for row in rows]) for key in ("time_s", f"{angle}_rad")
+        )
         step = abs(to_error[0]) * 0.02  # coordinates are rounded to a hundredth of a point
         assert np.polyval(to_time, dots[:, 0]) == pytest.approx(time, abs=0.5)
         assert np.polyval(to_error, dots[:, 1]) == pytest.approx(error, abs=step)
@@ -143,11 +146,11 @@ def test_dots_and_lines_are_those_of_the_results(results, drawn):
 
 def _scales(results, drawing, angle):
     """Straight lines from paper to time and to error that fit the dots best, and the dots."""
-    rows = results["angle_errors"]
+    rows = results.angle_errors
     strokes = _thirds(picture(drawing).paths("stroke-linecap: round"))[ANGLES.index(angle)]
     dots = np.vstack(strokes)[::2]  # each is a stroke of no length
-    to_time = np.polyfit(dots[:, 0], [row["time_s"] for row in rows], 1)
-    return to_time, np.polyfit(dots[:, 1], [row[f"{angle}_rad"] for row in rows], 1), dots
+    to_time = np.polyfit(dots[:, 0], [row.time_s for row in rows], 1)
+    return to_time, np.polyfit(dots[:, 1], [getattr(row, f"{angle}_rad") for row in rows], 1), dots
 
 
 def _thirds(paths):
@@ -161,14 +164,16 @@ def _lines(seen):
 
 
 def _block_row(results, angle):
-    rows = [r for r in results["regression"] if r["angle"] == angle and r["scope"] == "block"]
+    rows = [r for r in results.regression if r.angle == angle and r.scope == "block"]
     return rows[0]
 
 
 def _line(results, angle, prefix):
     row = _block_row(results, angle)
-    slope, constant = row[f"{prefix}slope_rad_per_s"], row[f"{prefix}intercept_rad"]
-    return lambda time: constant + slope * (time - row["time_origin_s"])
+    slope, constant = (
+        getattr(row, f"{prefix}{name}") for name in ("slope_rad_per_s", "intercept_rad")
+    )
+    return lambda time: constant + slope * (time - row.time_origin_s)
 
 
 @pytest.mark.parametrize("angle", ANGLES)
@@ -176,14 +181,12 @@ def test_the_band_is_the_confidence_interval_of_the_line(results, drawn, angle):
     """Width of the OLS band at its ends against the t-quantile of scipy."""
     row = _block_row(results, angle)
     band = _bands(drawn[1])[ANGLES.index(angle)]
-    times = np.array([r["time_s"] for r in results["angle_errors"]])
-    ends = np.array([times.min(), times.max()]) - row["time_origin_s"]
+    times = np.array([r.time_s for r in results.angle_errors])
+    ends = np.array([times.min(), times.max()]) - row.time_origin_s
     variance = (
-        row["intercept_se_rad"] ** 2
-        + 2.0 * ends * row["cov_intercept_slope"]
-        + (ends * row["slope_se"]) ** 2
+        row.intercept_se_rad**2 + 2.0 * ends * row.cov_intercept_slope + (ends * row.slope_se) ** 2
     )
-    widths = 2.0 * stats.t.ppf(0.975, row["df_resid"]) * np.sqrt(variance)
+    widths = 2.0 * stats.t.ppf(0.975, row.df_resid) * np.sqrt(variance)
     _, to_error, _ = _scales(results, drawn[1], angle)
     at_ends = [
         band[np.isclose(band[:, 0], x, atol=0.011), 1] for x in (band[:, 0].min(), band[:, 0].max())
@@ -222,8 +225,8 @@ def test_each_panel_states_r_squared_and_p_and_its_unit(results, drawn):
         row = _block_row(results, angle)
         head = next(text for text in texts if text.startswith(f"{angle}: R²"))
         share = float(re.search(r"R² [=<] ([\d.]+)", head)[1])
-        assert share == pytest.approx(row["r_squared"], abs=1e-4)
-        p = row["p_value"]
+        assert share == pytest.approx(row.r_squared, abs=1e-4)
+        p = row.p_value
         assert ("p < 0.001 (OLS)" if p < 0.001 else f"p = {p:.3f} (OLS)") in head
     assert sorted(text for text in texts if text.startswith("error, ")) == [
         "error, mrad",
@@ -233,9 +236,8 @@ def test_each_panel_states_r_squared_and_p_and_its_unit(results, drawn):
 
 
 def test_r_squared_is_never_rounded_to_nothing_or_to_certainty(results):
-    extreme = copy.deepcopy(results)
-    for angle, value in (("omega", 0.99996), ("phi", 2.5e-5)):
-        _block_row(extreme, angle)["r_squared"] = value
+    share = {"omega": 0.99996, "phi": 2.5e-5, "kappa": 0.5}
+    extreme = with_rows(results, "regression", lambda row: replace(row, r_squared=share[row.angle]))
     heads = " ".join(picture(draw_area(1, extreme)[1]).texts)
     assert "omega: R² > 0.9999" in heads
     assert "phi: R² < 0.0001" in heads
@@ -303,9 +305,7 @@ def test_ids_too_many_for_the_room_are_written_under_some_bars():
 
 
 def test_zero_parallax_has_no_place_on_a_logarithmic_scale(results):
-    exact = copy.deepcopy(results)
-    for row in exact["error_sources"]:
-        row["mean_px"] = 0.0
+    exact = with_rows(results, "error_sources", lambda row: replace(row, mean_px=0.0))
     assert figure_parallax.error_sources(exact) is None
 
 

@@ -15,6 +15,8 @@ from click.testing import CliRunner
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.block.image_pairs import stereo_models
+from posstats.contract.files import read_json
+from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, area_scenario, area_seed, true_causes
 from posstats.papers.drift.findings import AreaFindings, find
@@ -50,7 +52,7 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(folder):
-    return {a: json.loads((folder / f"area{a}" / "results.json").read_text()) for a in AREAS}
+    return {a: read_json(folder / f"area{a}" / "results.json", Results) for a in AREAS}
 
 
 @pytest.fixture(scope="module")
@@ -99,8 +101,8 @@ def test_one_strip_of_area_1_regresses_like_table_3(findings):
 @pytest.mark.parametrize("area", AREAS)
 def test_the_rules_choose_omega_alone_and_only_it_helps(findings, results, area):
     found = findings[area]
-    assert results[area]["verdict"]["corrected_angles"] == ["omega"]
-    assert results[area]["verdict"]["cause"] == "omega"
+    assert results[area].verdict.corrected_angles == ("omega",)
+    assert results[area].verdict.cause == "omega"
     assert found.corrected_omega_mm <= 1.6 * found.independent_mm
     assert found.corrected_omega_mm < 0.9 * found.pos_mm
     assert min(found.corrected_phi_mm, found.corrected_kappa_mm) > 0.9 * found.pos_mm
@@ -137,8 +139,8 @@ def test_reproduced_strip_statistics_are_those_of_the_models(comparison, results
     """Table 2 against the models' own values, not against the rows it is made from."""
     for area, pixel_mm in ((1, 0.012), (2, 0.012), (3, 0.009)):
         for strip in {row["strip"] for row in published(2, area=area)}:
-            models = chosen(results[area]["models"], strip=strip)
-            rms_mm = np.array([model["pos_px"] for model in models]) * pixel_mm
+            models = [row for row in results[area].models if row.strip == strip]
+            rms_mm = np.array([model.pos_px for model in models]) * pixel_mm
             expected = {"max": rms_mm.max(), "min": rms_mm.min(), "mean": rms_mm.mean()}
             for name, value in expected.items():
                 (row,) = chosen(comparison["rows"], table=2, area=area, strip=strip,
