@@ -21,6 +21,7 @@ paper: $(READY)  ## Repeat the source paper's experiment and write its report
 test: $(READY) lint types  ## Run all checks and tests
 	@.ci/debian-packages --pango
 	@.ci/debian-packages --browser
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/support/compile_kernels.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -q -n 2 --dist loadgroup
 
 .PHONY: lint

@@ -13,6 +13,8 @@ from posstats.errors import PosstatsError
 
 RuleSetName = Literal["paper", "strict"]
 """Rule sets that come with posstats."""
+ScenarioName = Literal["area1", "area1-small", "area2", "area3", "wucaps-flat", "wucaps-mountain"]
+"""Scenarios that come with posstats."""
 Scope = Literal["block", "strip"]
 AngleErrorSource = Literal["coplanarity", "bundle", "adjusted"]
 Frame = Literal["ground", "camera"]

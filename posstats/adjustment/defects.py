@@ -112,7 +112,7 @@ def weak_parameters(problem: BundleProblem, tests: Sequence[ParameterTest]) -> t
 def _of_parameters(problem: BundleProblem, common: Iterable[int]) -> tuple[Defect, ...]:
     left = {at: problem.parameters[at] for at in common}
     found = []
-    for code, rule in _RULES.items():
+    for code, rule in RULES.items():
         situation = _Situation(problem, left)
         concerned = rule(situation)
         if concerned:
@@ -204,7 +204,7 @@ def _of(*names: str) -> _Rule:
     return lambda situation: situation.named(names)
 
 
-_RULES: dict[str, _Rule] = {
+RULES: dict[str, _Rule] = {
     "unobserved": _unobserved,
     "unseen": _unseen,
     "twice": _twice,

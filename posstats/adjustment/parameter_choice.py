@@ -1,9 +1,9 @@
 """Additional parameters that a block does not need, or cannot determine, are dropped in order."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from posstats.adjustment.significance import ParameterTest, parameter_tests
+from posstats.contract.adjustment import DropReason
 from posstats.errors import UndeterminedError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import (
@@ -15,7 +15,6 @@ from posstats.numerics.bundle.parameters import (
 )
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
-Reason = Literal["singular", "not determined", "not significant"]
 _SHIFTS = (*GNSS_SHIFTS, *IMU_SHIFTS)
 _DRIFTS = (*GNSS_DRIFTS, *IMU_DRIFTS)
 
@@ -36,7 +35,7 @@ class Dropped:
     """
 
     parameter: CommonParameter
-    reason: Reason
+    reason: DropReason
     test: ParameterTest | None
 
 
@@ -86,7 +85,7 @@ def select_parameters(problem: BundleProblem) -> Selection:
         if not useless or result.dof <= 0:
             return Selection(tuple(dropped), problem, result)
         at = max(useless, key=lambda each: tests[each].p)
-        reason: Reason = "not significant" if tests[at].determined else "not determined"
+        reason: DropReason = "not significant" if tests[at].determined else "not determined"
         dropped.append(Dropped(problem.parameters[at], reason, tests[at]))
         problem = _without(problem, at)
 

@@ -70,8 +70,7 @@ def adjustment_results(
         points=point_summary(adjustment),
         images=image_places(adjustment.block),
         image_residuals=tuple(cell_rows(adjustment)),
-        warnings=tuple(adjustment.block.warnings),
-        notices=adjustment_notices(adjustment),
+        notices=(*adjustment.block.notices, *adjustment_notices(adjustment)),
     )
 
 

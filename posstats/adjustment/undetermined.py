@@ -1,7 +1,6 @@
 """What an adjustment does not determine, why, and what would: as codes and values."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -10,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from posstats.adjustment.defects import Defect, defects, weak_parameters
 from posstats.adjustment.significance import LEAST_REDUNDANCY, ParameterTest
 from posstats.arrays import Bools, Ids
-from posstats.contract.adjustment import Undetermined
+from posstats.contract.adjustment import OpenKind, Undetermined
 from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError, UndeterminedError
 from posstats.numerics.bundle.parameters import (
@@ -24,12 +23,10 @@ from posstats.numerics.bundle.parameters import (
 )
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
-Kind = Literal["parameter", "image", "connection"]
-
 FEW_IMAGES = 4  # below, a part of the block is named by its images, else by its strips
 
 
-_FAMILIES: dict[str, tuple[str, ...]] = {
+FAMILIES: dict[str, tuple[str, ...]] = {
     "gnss_shifts_by_prior": GNSS_SHIFTS,
     "gnss_drifts_by_prior": GNSS_DRIFTS,
     "yaw_or_kappa": ("boresight_yaw", "imu_kappa_shift"),
@@ -38,7 +35,7 @@ _FAMILIES: dict[str, tuple[str, ...]] = {
     "imu_drifts_by_prior": IMU_DRIFTS,
     "lever_arm_by_prior": LEVER_ARM,
 }
-_OF_CAMERA = "camera_by_prior"
+OF_CAMERA = "camera_by_prior"
 
 
 class UndeterminedBlockError(PosstatsError):
@@ -62,7 +59,7 @@ class UndeterminedBlockError(PosstatsError):
 
 def family_of(name: str) -> str:
     """The reason for which a parameter of this name may be known from its prior alone."""
-    return next((code for code, names in _FAMILIES.items() if name in names), _OF_CAMERA)
+    return next((code for code, names in FAMILIES.items() if name in names), OF_CAMERA)
 
 
 def undetermined(
@@ -141,7 +138,7 @@ def _explained(code: str) -> tuple[Notice, Notice]:
 
 
 def _open(
-    kind: Kind, names: Iterable[str], scope: str, reason: Notice, remedy: Notice
+    kind: OpenKind, names: Iterable[str], scope: str, reason: Notice, remedy: Notice
 ) -> Undetermined:
     return Undetermined(
         kind=kind, names=tuple(names), scope=scope, reason_notice=reason, remedy_notice=remedy

@@ -1,4 +1,4 @@
-"""Which angles to correct, in which form: rule sets are data, decisions carry their reason."""
+"""Which angles to correct, in which form: rule sets are data, decisions say why."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +15,7 @@ from posstats.analysis.regression import (
     ConstantFit,
     DriftFit,
 )
+from posstats.contract.notice import Notice, Value
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.hints import nearest
 from posstats.formats.toml_document import open_toml
@@ -75,7 +76,7 @@ class Decision:
     form: Form
     fit: FitKind
     rule: str
-    reason: str
+    notices: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class OutOfSampleParallax:
     n_models
         Models that could be tested.
     method
-        How the images of the test were kept out of the fit, in words.
+        How the images of the test were kept out of the fit, as a code.
     """
 
     raw_px: float
@@ -196,19 +197,17 @@ def _proposal(
 ) -> Decision:
     line, mean = chosen_fits(regression, rules.fit)
     form: Form = "none"
-    reasons = [] if regression.reason is None else [f"no line can be fitted: {regression.reason}"]
+    notices = [] if regression.notice is None else [_no_line(regression.notice)]
     if "linear" in rules.forms and line is not None and line_p is not None:
         significant = line_p < rules.alpha
         explains = line.rsquared >= rules.min_r_squared
         form = "linear" if significant and explains else form
-        reasons.append(_line_reason(line, line_p, rules))
+        notices.append(_on_line(line, line_p, rules))
     if form == "none" and "constant" in rules.forms and mean is not None and mean_p is not None:
         form = "constant" if mean_p < rules.alpha else form
-        reasons.append(_constant_reason(mean, mean_p, rules))
+        notices.append(_on_constant(mean, mean_p, rules))
     if rules.fit == "gls" and not regression.covariance_known:
-        reasons.append(
-            "the angle errors came without covariance, so standard errors rest on their scatter"
-        )
+        notices.append(Notice(code="no_covariance"))
     return Decision(
         angle=regression.angle,
         frame=regression.frame,
@@ -217,29 +216,41 @@ def _proposal(
         form=form,
         fit=rules.fit,
         rule=rules.name,
-        reason="; ".join(reasons),
+        notices=tuple(notices),
     )
 
 
-def _line_reason(line: DriftFit, p_value: float, rules: RuleSet) -> str:
-    verdict = "significant" if p_value < rules.alpha else "not significant"
-    text = (
-        f"drift {line.slope:.2e} ± {line.slope_se:.1e} rad/s {verdict} "
-        f"({_shown_p(p_value)}, level {rules.alpha:g})"
-    )
-    if rules.min_r_squared > 0.0:
-        side = "reaches" if line.rsquared >= rules.min_r_squared else "is below"
-        text += f", R2 = {line.rsquared:.3f} {side} {rules.min_r_squared:g}"
-    return text
+def _no_line(why: Notice) -> Notice:
+    return Notice(code="no_line", values={"why": why.code, **why.values})
 
 
-def _constant_reason(mean: ConstantFit, p_value: float, rules: RuleSet) -> str:
-    verdict = "significant" if p_value < rules.alpha else "not significant"
-    return f"constant {mean.value:.2e} ± {mean.se:.1e} rad {verdict} ({_shown_p(p_value)})"
+def _on_line(line: DriftFit, p_value: float, rules: RuleSet) -> Notice:
+    values: dict[str, Value] = {
+        "significance": _significance(p_value, rules),
+        "slope_rad_per_s": line.slope,
+        "slope_se_rad_per_s": line.slope_se,
+        "p": p_value,
+        "alpha": rules.alpha,
+    }
+    if rules.min_r_squared == 0.0:
+        return Notice(code="drift", values=values)
+    explains = line.rsquared >= rules.min_r_squared
+    values |= {"r_squared": line.rsquared, "min_r_squared": rules.min_r_squared}
+    return Notice(code="drift_explains" if explains else "drift_explains_little", values=values)
 
 
-def _shown_p(p_value: float) -> str:
-    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
+def _on_constant(mean: ConstantFit, p_value: float, rules: RuleSet) -> Notice:
+    values: dict[str, Value] = {
+        "significance": _significance(p_value, rules),
+        "constant_rad": mean.value,
+        "constant_se_rad": mean.se,
+        "p": p_value,
+    }
+    return Notice(code="constant", values=values)
+
+
+def _significance(p_value: float, rules: RuleSet) -> str:
+    return "significant" if p_value < rules.alpha else "not_significant"
 
 
 def _proven(
@@ -282,13 +293,20 @@ def _tried(
 
 def _with_gain(decision: Decision, gain: float, min_gain: float, method: str) -> Decision:
     if np.isnan(gain):
-        verdict = f"not testable out of sample ({method}): not corrected"
-        return replace(decision, correct=False, form="none", reason=f"{decision.reason}; {verdict}")
-    change = f"{abs(gain):.1%} {'less' if gain >= 0.0 else 'more'} mean parallax"
-    verdict = f"{change} out of sample ({method}), {min_gain:.0%} less needed"
+        untested = Notice(code="no_test_out_of_sample", values={"out_of_sample": method})
+        notices = (*decision.notices, untested)
+        return replace(decision, correct=False, form="none", notices=notices)
+    tested = Notice(
+        code="less_parallax_out_of_sample" if gain >= 0.0 else "more_parallax_out_of_sample",
+        values={
+            "change_share": abs(gain),
+            "out_of_sample": method,
+            "min_gain_share": min_gain,
+        },
+    )
     kept = gain >= min_gain
     form: Form = decision.form if kept else "none"
-    return replace(decision, correct=kept, form=form, reason=f"{decision.reason}; {verdict}")
+    return replace(decision, correct=kept, form=form, notices=(*decision.notices, tested))
 
 
 def _read_rules(content: bytes, source: str, name: str) -> RuleSet:

@@ -21,6 +21,7 @@ from posstats.arrays import Floats
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
+from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px
@@ -79,7 +80,7 @@ class Analysis:
         The ground frame, and the camera frame if it was asked for.
     chosen
         The one of `frames` whose corrections were selected.
-    frame_reason
+    frame_notice
         Why that one, when it was chosen automatically.
     corrected_orientations, corrected_px
         By "omega", "phi", "kappa" (the line of each angle alone, ground frame) and "selected":
@@ -102,7 +103,7 @@ class Analysis:
     fixed: dict[str, RelativeOrientation]
     frames: tuple[FrameAnalysis, ...]
     chosen: FrameAnalysis
-    frame_reason: str | None
+    frame_notice: Notice | None
     corrected_orientations: dict[str, Orientations]
     corrected_px: dict[str, Floats]
     triangulated_px: dict[str, Floats]
@@ -152,7 +153,7 @@ def analyse(
     errors, bundle = _angle_errors(block, models, settings, report)
     report("regression", 0.8)
     frames = _frames(models, errors, rules, settings)
-    chosen, frame_reason = _chosen_frame(frames)
+    chosen, frame_notice = _chosen_frame(frames)
     report("correction", 0.9)
     orientations = _corrected_orientations(block.orientations, frames[0], chosen, settings.scope)
     report("check points", 0.95)
@@ -166,7 +167,7 @@ def analyse(
         fixed=fixed,
         frames=frames,
         chosen=chosen,
-        frame_reason=frame_reason,
+        frame_notice=frame_notice,
         corrected_orientations=orientations,
         corrected_px=_parallax(models, orientations),
         triangulated_px=_parallax(models, _triangulated(block, bundle)),
@@ -225,7 +226,7 @@ def _with_some_form(decision: Decision) -> Decision:
     return decision if decision.correct else replace(decision, correct=True, form="constant")
 
 
-def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, str | None]:
+def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, Notice | None]:
     """The camera frame if it was asked for, or leaves less parallax out of sample."""
     ground = frames[0]
     compared = [frame.out_of_sample for frame in frames if frame.out_of_sample is not None]
@@ -233,12 +234,10 @@ def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, str
         return frames[-1], None
     left_px = [each.corrected_px for each in compared]
     if not np.isfinite(left_px).all():
-        return ground, "the frames cannot be compared out of sample: the ground frame is kept"
+        return ground, Notice(code="frames_not_compared")
     chosen = frames[int(np.argmin(left_px))]
-    return chosen, (
-        f"fitted in the {chosen.frame} frame, the angle errors leave less parallax on images that "
-        f"took no part in the fit ({compared[0].method})"
-    )
+    values = {"frame": chosen.frame, "out_of_sample": compared[0].method}
+    return chosen, Notice(code="frame_of_less_parallax", values=values)
 
 
 def _corrected_orientations(
@@ -257,7 +256,7 @@ def _line_of(
 ) -> tuple[Decision, ...]:
     """Take off the paper's line of one angle, wherever there is one."""
     return tuple(
-        Decision(angle, each.frame, each.scope, True, "linear", "ols", "alone", "")
+        Decision(angle, each.frame, each.scope, True, "linear", "ols", "alone")
         for each in regressions
         if each.angle == angle
         and (each.scope == BLOCK_SCOPE) == (scope == "block")

@@ -18,6 +18,8 @@ SCHEMA = "posstats-adjustment/1"
 
 Group = Literal["image", "gnss", "imu", "control", "parameters"]
 Observed = Literal["image", "axes", "gnss", "imu", "control"]
+DropReason = Literal["singular", "not determined", "not significant"]
+OpenKind = Literal["parameter", "image", "connection"]
 Element = Literal["omega", "phi", "kappa", "x", "y", "z"]
 Point = tuple[float, float]
 
@@ -126,8 +128,7 @@ class DroppedParameter:
     name: Annotated[str, about("of the parameter")]
     scope: Annotated[str, about("of the parameter")]
     reason: Annotated[
-        Literal["singular", "not determined", "not significant"],
-        about("`singular`: without it the normal equations may be regular"),
+        DropReason, about("`singular`: without it the normal equations may be regular")
     ]
 
 
@@ -147,7 +148,7 @@ class Undetermined:
     """Something that the measurements leave open."""
 
     kind: Annotated[
-        Literal["parameter", "image", "connection"],
+        OpenKind,
         about(
             "`parameter`: known from its prior, or its relation to others, alone; `image`: an"
             " angle known from the IMU alone; `connection`: a part without a point in common with"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from posstats.contract.about import about
+from posstats.contract.status import PointStatus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,11 +50,8 @@ class CheckPointDifference:
     point: Annotated[str, about("id of the point")]
     n_rays: Annotated[int, about("images that show it")]
     status: Annotated[
-        str,
-        about(
-            '`"ok"`, `"fewer than two rays"`, `"parallel rays"`, `"behind the camera"`,'
-            ' `"not converged"`'
-        ),
+        PointStatus,
+        about("whether it was intersected, or why not"),
     ]
     survey_sigma_xy_m: Annotated[
         float | None, about("standard deviation of the surveyed position; `null` if not stated")

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
 from posstats.contract.notice import Notice
+from posstats.contract.status import ModelStatus
 from posstats.contract.survey import BlockSummary, ImagePlace
 from posstats.settings import AngleErrorSource, FitKind, Form, Frame, FrameChoice, Scope
 
@@ -28,9 +29,9 @@ class AnalysisSettings:
     errors: Annotated[AngleErrorSource, about("where angle errors come from")]
     frame: Annotated[Frame, about("frame of the corrections")]
     frame_setting: Annotated[FrameChoice, about("frame as asked for")]
-    frame_reason: Annotated[str | None, about("why that frame, if it was chosen automatically")] = (
-        None
-    )
+    frame_reason: Annotated[
+        str | None, about("why that frame, if chosen automatically, in English")
+    ] = None
     frame_notice: Annotated[Notice | None, about("the same as code and values")] = None
     robust: Annotated[bool, about("whether blunders of tie points were resisted")]
     position_m: Annotated[float, about("stated standard deviation of a position")]
@@ -115,7 +116,7 @@ class ModelParallax:
     bundle_px: Annotated[
         float | None, about("the orientation of `--errors bundle`, all points")
     ] = None
-    status: Annotated[str, about('`"ok"`, or why there is no relative orientation')]
+    status: Annotated[ModelStatus, about('`"ok"`, or why there is no relative orientation')]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,7 +240,7 @@ class Regression:
     covariance_known: Annotated[
         bool, about("false if the errors came without covariance (`--errors adjusted`)")
     ]
-    reason: Annotated[str | None, about("why a fit is impossible, or `null`")] = None
+    reason: Annotated[str | None, about("why a fit is impossible, in English, or `null`")] = None
     notice: Annotated[Notice | None, about("the same as code and values")] = None
 
 
@@ -266,7 +267,7 @@ class Selection:
     form: Annotated[Form, about("of the function taken off")]
     rule: Annotated[str, about("name of the rule set")]
     fit: Annotated[FitKind, about("the fit that is taken off")]
-    reason: Annotated[str, about("why")] = ""
+    reason: Annotated[str, about("why, in English")] = ""
     notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()
 
 
@@ -289,7 +290,10 @@ class Observability:
 
     scope: Annotated[str, about('`"block"` or a strip\'s id')]
     unobservable: Annotated[tuple[str, ...], about("rotations left open, in words")] = ()
-    rotations: Annotated[tuple[str, ...], about("the same as codes")] = ()
+    rotations: Annotated[
+        tuple[str, ...],
+        about("the same as codes: `about_base_axis`, `about_axis_across`, `about_vertical`"),
+    ] = ()
     images: Annotated[tuple[str, ...], about("ids of images whose angles are not determined")]
 
 
@@ -329,5 +333,5 @@ class Results:
         tuple[CheckPointResidual, ...], about("one per orientation and check point")
     ]
     observability: Annotated[tuple[Observability, ...], about("one per scope")]
-    warnings: Annotated[tuple[str, ...], about("sentences")] = ()
-    notices: Annotated[tuple[Notice, ...], about("the warnings as codes and values")] = ()
+    warnings: Annotated[tuple[str, ...], about("what to beware of, in English")] = ()
+    notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()

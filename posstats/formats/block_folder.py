@@ -13,9 +13,10 @@ import numpy as np
 from posstats.arrays import Floats
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
+from posstats.contract.notice import Notice
 from posstats.errors import BlockFormatError, GeometryError
+from posstats.formats.block_notices import block_notices, settings_notices, time_notices
 from posstats.formats.block_toml import FILE, BlockSettings, parse_settings
-from posstats.formats.block_warnings import block_warnings, settings_warnings, time_warnings
 from posstats.formats.block_writing import write_block, write_orientations
 from posstats.formats.convention import Convention
 from posstats.formats.orientation_files import (
@@ -145,7 +146,7 @@ def _block(
         source=source_table(rows, settings),
         folder=folder,
     )
-    return replace(block, warnings=_warnings(block, settings, rows))
+    return replace(block, notices=_notices(block, settings, rows))
 
 
 def _frame(
@@ -167,10 +168,10 @@ def _frame(
         return None
 
 
-def _warnings(block: Block, settings: BlockSettings, rows: PosRows) -> tuple[str, ...]:
+def _notices(block: Block, settings: BlockSettings, rows: PosRows) -> tuple[Notice, ...]:
     file_order = np.argsort(rows.row)
     return (
-        *settings_warnings(settings),
-        *time_warnings(rows.time_s[file_order], [str(i) for i in rows.image[file_order]]),
-        *block_warnings(block),
+        *settings_notices(settings),
+        *time_notices(rows.time_s[file_order], [str(i) for i in rows.image[file_order]]),
+        *block_notices(block),
     )

@@ -24,7 +24,7 @@ def limits(material: Material) -> Part:
         Bullets(tuple(_limits(material))),
         *filled([observability_table(words, material.results)]),
     ]
-    told = {"notes": acceptance.profile.notes, "warnings": acceptance.warnings}
+    told = {"notes": acceptance.profile.notes, "warnings": _warnings(words, material.results)}
     for name, texts in told.items():
         if texts:
             listed = Bullets(tuple(dict.fromkeys(texts)))
@@ -32,12 +32,18 @@ def limits(material: Material) -> Part:
     return section(words, "limits", content)
 
 
+def _warnings(words: Words, results: Results) -> tuple[str, ...]:
+    """The notices of the analysis; of an earlier version's file, its sentences."""
+    return tuple(map(words.notice, results.notices)) or results.warnings
+
+
 def observability_table(words: Words, results: Results) -> Table:
     """What the tie points leave open; scopes of which the same is to be said share a row."""
     scopes: dict[tuple[str, int], list[str]] = {}
     for row in results.observability:
-        if row.unobservable:
-            motions = words.joined(words.known("motion", each) for each in row.unobservable)
+        open_rotations = row.rotations or row.unobservable  # an earlier file has words only
+        if open_rotations:
+            motions = words.joined(words.known("rotation", each) for each in open_rotations)
             named = scopes.setdefault((motions, len(row.images)), [])
             named.append(scope_name(words, row.scope))
     columns = (

@@ -15,7 +15,7 @@ from .units import Lengths
 
 SIGNS = {"accepted": "✓", "rejected": "✗", "not assessable": "?",
          "pass": "✓", "fail": "✗", "not assessed": "?"}  # fmt: skip
-DOMAINS = ("document", "acceptance")
+DOMAINS = ("document", "notices", "acceptance")
 NAMED = 3  # requirements named in the verdict
 IN_A_LINE = ("class_h_m", "class_v_m", "map_scale", "gsd_m", "terrain")
 

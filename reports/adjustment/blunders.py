@@ -29,13 +29,15 @@ def table(words: Words, rows: Sequence[ContradictedObservation]) -> Table:
     """What was taken out, the largest first among image rays."""
     shown = rows[:SHOWN_BLUNDERS]
     columns = (
-        text_column(words.text("column.observation"), [words.of("kind", r.kind) for r in shown]),
-        text_column(words.text("column.image"), [row.image for row in shown]),
-        text_column(words.text("column.point"), [row.point for row in shown]),
+        text_column(
+            words.text("bundle_column.observation"), [words.of("kind", r.kind) for r in shown]
+        ),
+        text_column(words.text("bundle_column.image"), [row.image for row in shown]),
+        text_column(words.text("bundle_column.point"), [row.point for row in shown]),
         number_column("w", "", [row.w for row in shown]),
-        text_column(words.text("column.size"), [_size(row) for row in shown]),
-        text_column(words.text("column.unit"), [unit_of(row.unit).name for row in shown]),
-        text_column(words.text("column.found_by"), [words.text(_how(row)) for row in shown]),
+        text_column(words.text("bundle_column.size"), [_size(row) for row in shown]),
+        text_column(words.text("bundle_column.unit"), [unit_of(row.unit).name for row in shown]),
+        text_column(words.text("bundle_column.found_by"), [words.text(_how(row)) for row in shown]),
     )
     notes = not_shown(words, len(rows) - len(shown))
     return Table("blunders", words.text("blunders.caption"), columns, notes)

@@ -54,7 +54,7 @@ def build(results: AdjustmentResults, language: str = "en") -> ReportDocument:
         )
     return ReportDocument(
         language=language,
-        title=words.text("document.title"),
+        title=words.text("bundle_document.title"),
         subject=results.block.name,
         subtitle=subtitle(words, results),
         mark=words.text("mark.simulated") if results.block.simulated else "",
@@ -69,4 +69,8 @@ def build(results: AdjustmentResults, language: str = "en") -> ReportDocument:
 
 def _families(words: Words) -> tuple[str, ...]:
     """Families of the texts in figures."""
+<<<<<<< HEAD
     return cjk.figure_families(words.text("axis.east"))
+=======
+    return cjk.figure_families(words.text("bundle_axis.east"))
+>>>>>>> main

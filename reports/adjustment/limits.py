@@ -15,16 +15,18 @@ SHOWN_NAMES = 12
 def topic(words: Words, results: AdjustmentResults) -> Part:
     """What is open, why, what would determine it; warnings."""
     open_unknowns = filled([table(words, results.observability)])
-    first = Paragraph(words.text("limits.open" if open_unknowns else "limits.determined"))
+    first = Paragraph(
+        words.text("bundle_limits.open" if open_unknowns else "bundle_limits.determined")
+    )
     content = (first, *open_unknowns, *_warnings(words, results))
-    return Part("limits", words.text("limits.title"), content)
+    return Part("limits", words.text("bundle_limits.title"), content)
 
 
 def _warnings(words: Words, results: AdjustmentResults) -> tuple[Content, ...]:
-    said = (*results.warnings, *map(words.notice, results.notices))
+    said = tuple(map(words.notice, results.notices))
     if not said:
-        return (Paragraph(words.text("limits.no_warnings")),)
-    return Paragraph(words.text("limits.warnings")), Bullets(said)
+        return (Paragraph(words.text("bundle_limits.no_warnings")),)
+    return Paragraph(words.text("bundle_limits.warnings")), Bullets(said)
 
 
 def table(words: Words, rows: Sequence[Undetermined]) -> Table:
@@ -35,9 +37,15 @@ def table(words: Words, rows: Sequence[Undetermined]) -> Table:
         alike.setdefault(key, []).append(row)
     first = [same[0] for same in alike.values()]
     columns = (
-        prose_column(words.text("column.what"), [_subject(words, s) for s in alike.values()]),
-        prose_column(words.text("column.why"), [words.notice(r.reason_notice) for r in first]),
-        prose_column(words.text("column.remedy"), [words.notice(r.remedy_notice) for r in first]),
+        prose_column(
+            words.text("bundle_column.what"), [_subject(words, s) for s in alike.values()]
+        ),
+        prose_column(
+            words.text("bundle_column.why"), [words.notice(r.reason_notice) for r in first]
+        ),
+        prose_column(
+            words.text("bundle_column.remedy"), [words.notice(r.remedy_notice) for r in first]
+        ),
     )
     return Table("observability", words.text("observability.caption"), columns)
 

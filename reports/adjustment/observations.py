@@ -43,17 +43,23 @@ def table(words: Words, groups: Sequence[GroupSummary]) -> Table:
     rms = scaled([row.rms for row in rows], units)
     detectable = scaled([row.median_detectable for row in rows], units)
     columns = [
-        text_column(words.text("column.observations"), [words.of("group", r.group) for r in rows]),
-        count_column(words.text("column.number"), [row.n for row in rows]),
-        number_column(words.text("column.redundancy"), "", [row.redundancy for row in rows], 4),
-        number_column(words.text("column.rms"), "", rms),
-        number_column(words.text("column.detectable"), "", detectable),
-        text_column(words.text("column.unit"), [unit.name for unit in units]),
-        number_column(words.text("column.factor"), "", [row.variance_factor for row in rows]),
+        text_column(
+            words.text("bundle_column.observations"), [words.of("group", r.group) for r in rows]
+        ),
+        count_column(words.text("bundle_column.number"), [row.n for row in rows]),
+        number_column(
+            words.text("bundle_column.redundancy"), "", [row.redundancy for row in rows], 4
+        ),
+        number_column(words.text("bundle_column.rms"), "", rms),
+        number_column(words.text("bundle_column.detectable"), "", detectable),
+        text_column(words.text("bundle_column.unit"), [unit.name for unit in units]),
+        number_column(
+            words.text("bundle_column.factor"), "", [row.variance_factor for row in rows]
+        ),
     ]
     factors = [row.weight_factor for row in rows]
     if any(factor is not None for factor in factors):
-        title, unit = words.text("column.estimated"), words.text("unit.stated")
+        title, unit = words.text("bundle_column.estimated"), words.text("unit.stated")
         columns.append(number_column(title, unit, factors))
     notes = (words.text("groups.factor"), words.text("groups.detectable"))
     return Table("groups", words.text("groups.caption"), tuple(columns), notes)
@@ -89,7 +95,7 @@ def _dress(words: Words, axis: Axes, place: Floats, size: float) -> None:
     """Limits and ticks of the format."""
     low, high = place.min(axis=0) - size / 2.0, place.max(axis=0) + size / 2.0
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]),
-             xlabel=words.text("axis.x"), ylabel=words.text("axis.y"))  # fmt: skip
+             xlabel=words.text("bundle_axis.x"), ylabel=words.text("bundle_axis.y"))  # fmt: skip
     style.plain_ticks(axis)
     for side in (axis.xaxis, axis.yaxis):
         side.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))

@@ -35,11 +35,13 @@ def table(words: Words, rows: Sequence[OrientationElement]) -> Table:
         return number_column(words.text(title), "", scaled(values, units), group=words.text(group))
 
     columns = (
-        text_column(words.text("column.element"), [words.element(row.element) for row in rows]),
-        text_column(words.text("column.unit"), [unit.name for unit in units]),
-        column("column.median", "head.sigma", [row.median_sigma for row in rows]),
-        column("column.largest", "head.sigma", [row.max_sigma for row in rows]),
-        column("column.mean", "head.pos", [row.pos_mean for row in rows]),
-        column("column.rms_short", "head.pos", [row.pos_rms for row in rows]),
+        text_column(
+            words.text("bundle_column.element"), [words.element(row.element) for row in rows]
+        ),
+        text_column(words.text("bundle_column.unit"), [unit.name for unit in units]),
+        column("bundle_column.median", "head.sigma", [row.median_sigma for row in rows]),
+        column("bundle_column.largest", "head.sigma", [row.max_sigma for row in rows]),
+        column("bundle_column.mean", "head.pos", [row.pos_mean for row in rows]),
+        column("bundle_column.rms_short", "head.pos", [row.pos_rms for row in rows]),
     )
     return Table("orientations", words.text("orientations.caption"), columns)

@@ -48,15 +48,21 @@ def table(words: Words, rows: Sequence[AdditionalParameter], *, of_cameras: bool
     units = [unit_of(row.unit) for row in rows]
     sigmas = scaled([row.sigma for row in rows], units)
     columns = (
-        text_column(words.text("column.parameter"), [words.parameter(row.name) for row in rows]),
-        text_column(words.text("column.scope"), [words.scope(row.scope) for row in rows]),
-        Column(words.text("column.value"), _to_sigma(rows, units)),
-        number_column(words.text("column.sigma"), "", sigmas, 2),
-        text_column(words.text("column.unit"), [unit.name for unit in units]),
+        text_column(
+            words.text("bundle_column.parameter"), [words.parameter(row.name) for row in rows]
+        ),
+        text_column(words.text("bundle_column.scope"), [words.scope(row.scope) for row in rows]),
+        Column(words.text("bundle_column.value"), _to_sigma(rows, units)),
+        number_column(words.text("bundle_column.sigma"), "", sigmas, 2),
+        text_column(words.text("bundle_column.unit"), [unit.name for unit in units]),
         aligned_column("t", "", [row.t for row in rows]),
         p_column("p", [row.p for row in rows]),
-        text_column(words.text("column.significant"), [words.yes(r.significant) for r in rows]),
-        text_column(words.text("column.known_from"), [words.text(_source(row)) for row in rows]),
+        text_column(
+            words.text("bundle_column.significant"), [words.yes(r.significant) for r in rows]
+        ),
+        text_column(
+            words.text("bundle_column.known_from"), [words.text(_source(row)) for row in rows]
+        ),
     )
     notes = [words.text("parameters.signs")]
     if of_cameras:
@@ -91,7 +97,7 @@ def camera_table(words: Words, rows: Sequence[AdjustedCamera]) -> Table:
     stated = [(r.stated_principal_distance_px, *r.stated_principal_point_px) for r in rows]
     adjusted = [(r.principal_distance_px, *r.principal_point_px) for r in rows]
     columns = (
-        text_column(words.text("column.camera"), [row.camera for row in rows]),
+        text_column(words.text("bundle_column.camera"), [row.camera for row in rows]),
         *_interior(words, stated, words.text("cameras.stated")),
         *_interior(words, adjusted, words.text("cameras.adjusted")),
     )
@@ -103,19 +109,23 @@ def _interior(
     words: Words, values_px: Sequence[tuple[float, float, float]], group: str
 ) -> tuple[Column, ...]:
     """Principal distance, column and row: thousands of pixels, of which hundredths count."""
+    titles = (words.text(f"bundle_column.{name}") for name in ("distance", "column", "row"))
     return tuple(
-        Column(words.text(f"column.{name}"), tuple(fmt.fixed(v[k], 2) for v in values_px), "px",
-               group=group)
-        for k, name in enumerate(("distance", "column", "row"))
-    )  # fmt: skip
+        Column(title, tuple(fmt.fixed(value[k], 2) for value in values_px), "px", group=group)
+        for k, title in enumerate(titles)
+    )
 
 
 def dropped_table(words: Words, rows: Sequence[DroppedParameter]) -> Table:
     """Parameters that were dropped, in order."""
     columns = (
-        text_column(words.text("column.parameter"), [words.parameter(row.name) for row in rows]),
-        text_column(words.text("column.scope"), [words.scope(row.scope) for row in rows]),
-        text_column(words.text("column.reason"), [words.of("dropped", row.reason) for row in rows]),
+        text_column(
+            words.text("bundle_column.parameter"), [words.parameter(row.name) for row in rows]
+        ),
+        text_column(words.text("bundle_column.scope"), [words.scope(row.scope) for row in rows]),
+        text_column(
+            words.text("bundle_column.reason"), [words.of("dropped", row.reason) for row in rows]
+        ),
     )
     return Table("dropped", words.text("dropped.caption"), columns)
 
@@ -126,14 +136,14 @@ def correlation_table(words: Words, rows: Sequence[Correlation]) -> Table:
     shown = found[:SHOWN_CORRELATIONS]
     columns = (
         text_column(
-            words.text("column.parameter"),
+            words.text("bundle_column.parameter"),
             [_named(words, row.first, row.first_scope) for row in shown],
         ),
         text_column(
-            words.text("column.with"),
+            words.text("bundle_column.with"),
             [_named(words, row.second, row.second_scope) for row in shown],
         ),
-        aligned_column(words.text("column.correlation"), "", [row.value for row in shown]),
+        aligned_column(words.text("bundle_column.correlation"), "", [row.value for row in shown]),
     )
     n_more = len(found) - len(shown)
     notes = (words.text("correlations.more", n=fmt.count(n_more)),) if n_more else ()

@@ -24,7 +24,7 @@ def figure(words: Words, results: AdjustmentResults) -> Drawing | None:
     axis = figure.add_subplot()
     _images(axis, view, results)
     _points(words, axis, view, results)
-    view.dress(axis, (words.text("axis.east"), words.text("axis.north")))
+    view.dress(axis, (words.text("bundle_axis.east"), words.text("bundle_axis.north")))
     north_and_scale(axis, view)
     if axis.get_legend_handles_labels()[1]:
         style.legend_below(figure, axis, 2)

@@ -47,9 +47,9 @@ def control_table(words: Words, rows: Sequence[ControlPoint]) -> Table:
     shown = rows[:SHOWN_POINTS]
     differences = ([r.dx_m for r in shown], [r.dy_m for r in shown], [r.dz_m for r in shown])
     columns = (
-        text_column(words.text("column.point"), [row.point for row in shown]),
+        text_column(words.text("bundle_column.point"), [row.point for row in shown]),
         *_along_axes(words, differences, "head.adjusted"),
-        aligned_column(words.text("column.largest_w"), "", [row.largest_w for row in shown]),
+        aligned_column(words.text("bundle_column.largest_w"), "", [row.largest_w for row in shown]),
     )
     notes = not_shown(words, len(rows) - len(shown))
     return Table("control_points", words.text("control.caption"), columns, notes)
@@ -65,17 +65,18 @@ def accuracy_table(words: Words, rows: Sequence[CheckPointStatistics]) -> Table:
     shifts = [row.shift_m or (None, None, None) for row in kept]
     columns = (
         text_column(
-            words.text("column.orientation"), [words.of("orientation", r.orientation) for r in kept]
+            words.text("bundle_column.orientation"),
+            [words.of("bundle_orientation", r.orientation) for r in kept],
         ),
-        count_column(words.text("column.points"), [row.n for row in kept]),
-        column("column.h", "head.maximum", [row.max_horizontal_m for row in kept]),
-        column("column.v", "head.maximum", [row.max_vertical_m for row in kept]),
-        column("column.h", "head.minimum", [row.min_horizontal_m for row in kept]),
-        column("column.v", "head.minimum", [row.min_vertical_m for row in kept]),
-        column("column.h", "head.rmse", [row.rmse_horizontal_m for row in kept]),
-        column("column.v", "head.rmse", [row.rmse_vertical_m for row in kept]),
+        count_column(words.text("bundle_column.points"), [row.n for row in kept]),
+        column("bundle_column.h", "head.maximum", [row.max_horizontal_m for row in kept]),
+        column("bundle_column.v", "head.maximum", [row.max_vertical_m for row in kept]),
+        column("bundle_column.h", "head.minimum", [row.min_horizontal_m for row in kept]),
+        column("bundle_column.v", "head.minimum", [row.min_vertical_m for row in kept]),
+        column("bundle_column.h", "head.rmse", [row.rmse_horizontal_m for row in kept]),
+        column("bundle_column.v", "head.rmse", [row.rmse_vertical_m for row in kept]),
         *(
-            column(f"column.{axis}", "head.mean", [shift[k] for shift in shifts])
+            column(f"bundle_column.{axis}", "head.mean", [shift[k] for shift in shifts])
             for k, axis in enumerate(_AXES)
         ),
     )
@@ -93,8 +94,8 @@ def check_table(words: Words, rows: Sequence[CheckPointResidual]) -> Table:
         [row.sigma_z_m for row in shown],
     )
     columns = (
-        text_column(words.text("column.point"), [row.point for row in shown]),
-        count_column(words.text("column.rays"), [row.n_rays for row in shown]),
+        text_column(words.text("bundle_column.point"), [row.point for row in shown]),
+        count_column(words.text("bundle_column.rays"), [row.n_rays for row in shown]),
         *_along_axes(words, differences, "head.computed"),
         *_along_axes(words, sigmas, "head.sigma"),
     )
@@ -107,7 +108,7 @@ def _along_axes(
 ) -> tuple[Column, ...]:
     """Values east, north and up."""
     return tuple(
-        aligned_column(words.text(f"column.{axis}"), "m", values, group=words.text(group))
+        aligned_column(words.text(f"bundle_column.{axis}"), "m", values, group=words.text(group))
         for axis, values in zip(_AXES, values_m, strict=True)
     )
 
@@ -122,7 +123,7 @@ def figure(words: Words, results: AdjustmentResults) -> Drawing | None:
     panels = [
         Panel(words.of("panel", name), residuals(results, name)) for name in ("pos", "bundle")
     ]
-    axes = (words.text("axis.east"), words.text("axis.north"))
+    axes = (words.text("bundle_axis.east"), words.text("bundle_axis.north"))
     drawn = difference_plan(results.images, panels, axes, centred=False)
     if drawn is None:
         return None

@@ -16,9 +16,19 @@ def topic(words: Words, results: AdjustmentResults) -> Part:
     """What was read, asked for, and computed with."""
     inputs = [(each.file, each.sha256) for each in results.block.inputs]
     tables = [
-        _table(words, "inputs", ("column.file", "column.sha256"), inputs),
-        _table(words, "settings", ("column.setting", "column.is"), _settings(words, results)),
-        _table(words, "versions", ("column.package", "column.version"), results.versions.items()),
+        _table(words, "inputs", ("bundle_column.file", "bundle_column.sha256"), inputs),
+        _table(
+            words,
+            "settings",
+            ("bundle_column.setting", "bundle_column.is"),
+            _settings(words, results),
+        ),
+        _table(
+            words,
+            "versions",
+            ("bundle_column.package", "bundle_column.version"),
+            results.versions.items(),
+        ),
     ]
     return Part("provenance", words.text("provenance.title"), filled(tables))
 
@@ -42,7 +52,7 @@ def _settings(words: Words, results: AdjustmentResults) -> list[Pair]:
     shown = [*_chosen(words, settings).items(), *stated.items()]
     if settings.calibration:
         shown.append(("calibration", settings.calibration))
-    named = [(words.of("setting", key), value) for key, value in shown]
+    named = [(words.of("bundle_setting", key), value) for key, value in shown]
     return [*named, *(_priors(words, settings) if settings.drift != "none" else ())]
 
 

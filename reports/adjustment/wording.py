@@ -27,7 +27,7 @@ def with_words(results: AdjustmentResults) -> AdjustmentResults:
             )
             for each in results.observability
         ),
-        warnings=(*results.warnings, *map(words.notice, results.notices)),
+        warnings=tuple(words.notice(each, plain=True) for each in results.notices),
     )
 
 

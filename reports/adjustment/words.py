@@ -10,7 +10,7 @@ from ..document import words as document
 from ..document.catalogue import catalogue
 from .units import unit_of
 
-DOMAINS = ("document", "adjustment")
+DOMAINS = ("document", "notices", "adjustment")
 _BLOCK = "block"
 
 
@@ -23,15 +23,15 @@ class Words(document.Words):
         source, _, rest = name.partition("_")
         if source in ("gnss", "imu"):
             of, _, kind = rest.partition("_")
-            return self.text(f"parameter.{source}_{kind}", of=self.of("component", of))
+            return self.text(f"parameter.{source}_{kind}", of=self.of("bundle_component", of))
         if name == "camera_c":
             return self.text("parameter.distance")
         of = rest.rpartition("_")[2]
-        return self.text(f"parameter.{source}", of=self.known("component", of))
+        return self.text(f"parameter.{source}", of=self.known("bundle_component", of))
 
     def element(self, name: Element) -> str:
         """An element of an orientation."""
-        return self.of("component", name)
+        return self.of("bundle_component", name)
 
     def scope(self, scope: str) -> str:
         """``block``, or the strip in words."""
@@ -48,7 +48,7 @@ class Words(document.Words):
         unit = unit_of(parameter.unit)
         return fmt.with_unit(unit.scaled(parameter.value), unit.name)
 
-    def notice(self, said: Notice) -> str:
+    def notice(self, said: Notice, *, plain: bool = False) -> str:
         """A notice in words; control points are counted, groups of observations named."""
         n_control, groups = said.values.get("n_control"), said.values.get("groups")
         if isinstance(n_control, int):
@@ -56,7 +56,7 @@ class Words(document.Words):
         if isinstance(groups, tuple):
             named = self.text("list.between").join(self.of("weight", str(g)) for g in groups)
             return self.of("notice", said.code, groups=named)
-        return super().notice(said)
+        return super().notice(said, plain=plain)
 
     def _control(self, n: int) -> str:
         return self.counted("control.count", n) if n else self.text("control.no")

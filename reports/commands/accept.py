@@ -18,6 +18,7 @@ from posstats.settings import JudgedOrientation, Language
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document
 from ..block.summary import WIDTH
+from ..block.wording import with_words
 from ..output.progress import Advance, progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
@@ -116,7 +117,11 @@ def _results(
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
+<<<<<<< HEAD
     found = results(analysis, created=now())
+=======
+    found = with_words(results(analysis, created=now()))
+>>>>>>> main
     text = to_json(found).encode("utf-8")
     return found, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
 

@@ -5,6 +5,7 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
+from typing import get_args
 
 import click
 
@@ -16,6 +17,7 @@ from posstats.settings import (
     FrameChoice,
     Language,
     RuleSetName,
+    ScenarioName,
     Scope,
     SelfCalibration,
     Settings,
@@ -303,8 +305,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     "--scenario",
     type=FOLDER,
     metavar="FILE",
-    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, "
-    "area3, wucaps-flat, wucaps-mountain.",
+    help=f"Scenario file (docs/simulation.md), or one of {', '.join(get_args(ScenarioName))}.",
 )
 @click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")

@@ -10,6 +10,8 @@ from posstats.formats.block_folder import read_block
 from posstats.formats.block_toml import FILE
 from posstats.settings import Settings
 
+from ..block.wording import with_words
+
 
 def recompute(folder: Path, pattern: Results) -> Results:
     """Analyse a block folder as `pattern`, its earlier results, says it was analysed.
@@ -25,7 +27,7 @@ def recompute(folder: Path, pattern: Results) -> Results:
     for name in _calibrations(pattern):
         block = calibrated(block, folder / name)
     analysis = analyse(block, _settings(folder, pattern.settings))
-    return results(analysis, created=pattern.created)
+    return with_words(results(analysis, created=pattern.created))
 
 
 def _calibrations(pattern: Results) -> list[str]:

@@ -107,7 +107,7 @@ def test_a_contract_may_leave_the_profile_to_the_command(tmp_path):
     assert finding == (
         "other.toml -> jrc.toml: extends another profile than nssda, which was asked for"
     )
-    with pytest.raises(PosstatsError, match=r"no profile file 'nsda', and no profile"):
+    with pytest.raises(PosstatsError, match=r"no profile file 'nsda', and no"):
         load_contract(path, base="nsda")
 
 

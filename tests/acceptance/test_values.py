@@ -1,6 +1,7 @@
 """Numbers of acceptance.json against a case that is worked out by hand."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile, Requirement
 from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values
+from posstats.contract.files import as_values
 from posstats.statistics.percentiles import sample_percentile
 
 SURVEY_XY_M, SURVEY_Z_M = 0.02, 0.05
@@ -29,11 +31,12 @@ def requirement(quantity, limit, threshold=None):
 
 @pytest.fixture(scope="module")
 def assessment():
-    lost = residual_rows([[0.0, 0.0, 0.0]])[0] | {
-        "point": "lost", "status": "behind the camera", "dx_m": None, "dy_m": None, "dz_m": None,
-    }  # fmt: skip
+    (none,) = residual_rows([[0.0, 0.0, 0.0]])
+    lost = replace(
+        none, point="lost", status="behind the camera", dx_m=None, dy_m=None, dz_m=None
+    )  # fmt: skip
     rows = residual_rows(DIFFERENCE_M, "selected", SURVEY_XY_M, SURVEY_Z_M)
-    results = results_of([], check_point_residuals=[*rows, lost])
+    results = results_of([], check_point_residuals=(*rows, lost))
     profile = Profile("made", "1", "Made up", "none", (
         requirement("rmse_v", "0.4"),
         requirement("n_blunders_h", "0", "0.45"),
@@ -47,7 +50,7 @@ def assessment():
 @pytest.fixture(scope="module")
 def values(assessment):
     occasion = Occasion(Reason("asked"), Contract(), "en", "2026-01-05", "0" * 64)
-    return acceptance_values(*assessment, occasion)
+    return as_values(acceptance_values(*assessment, occasion))
 
 
 def by(rows, key="component"):
@@ -117,5 +120,5 @@ def test_a_height_that_is_a_length_in_plan_is_no_blunder_there():
     ))  # fmt: skip
     assessed = assess(evidence(results, "selected", Product()), profile, Product())
     occasion = Occasion(Reason("asked"), Contract(), "en", "2026-01-05", "0" * 64)
-    found = acceptance_values(assessed, results, occasion)["check_points"]
-    assert [row["blunder"] for row in found] == [False, True, False]
+    found = acceptance_values(assessed, results, occasion).check_points
+    assert [row.blunder for row in found] == [False, True, False]

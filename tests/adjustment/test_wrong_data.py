@@ -153,7 +153,7 @@ def _flight_in_image(block, image):
     ("change", "message"),
     [
         (lambda b: replace(b, tie_points=replace(b.tie_points, xy_px=b.tie_points.xy_px * [-1, 1])),
-         "x of the image coordinates has the wrong sign"),
+         "x of .*wrong sign"),
     ],
 )  # fmt: skip
 def test_a_mistake_in_all_images_is_named(block, change, message):
@@ -164,12 +164,12 @@ def test_a_mistake_in_all_images_is_named(block, change, message):
 @pytest.mark.parametrize(
     ("true", "stated", "message"),
     [
-        (("gon", OPK), ("deg", OPK), "the angles are in gon, not in degrees"),
-        (("deg", OPK), ("gon", OPK), "the angles are in degrees, not in gon"),
-        (("rad", OPK), ("deg", OPK), "the angles are in radians, not in degrees"),
-        (("deg", OPK), ("deg", RPH), "the angles are omega-phi-kappa, not roll-pitch-heading"),
-        (("deg", RPH), ("deg", OPK), "the angles are roll-pitch-heading, not omega-phi-kappa"),
-        (("deg", "pitch-roll-heading"), ("deg", RPH), "roll and pitch are exchanged"),
+        (("gon", OPK), ("deg", OPK), "in gon, not"),
+        (("deg", OPK), ("gon", OPK), "in degrees, not"),
+        (("rad", OPK), ("deg", OPK), "in radians, not"),
+        (("deg", OPK), ("deg", RPH), "omega-phi-kappa, not roll-pitch-heading"),
+        (("deg", RPH), ("deg", OPK), "roll-pitch-heading, not omega-phi-kappa"),
+        (("deg", "pitch-roll-heading"), ("deg", RPH), "roll and pitch"),
     ],
 )
 def test_angles_of_a_file_that_are_no_such_angles_are_named(tmp_path, true, stated, message):
@@ -216,7 +216,7 @@ def test_a_control_point_without_any_error_is_refused(block):
 
 def test_points_in_one_image_each_are_told(block):
     ties = block.tie_points
-    with pytest.raises(PosstatsError, match="measured in two images"):
+    with pytest.raises(PosstatsError, match="two images"):
         adjust_block(replace(block, tie_points=ties.subset(ties.image == 0)))
 
 
@@ -237,18 +237,18 @@ def test_an_observation_that_the_block_needs_is_said_to_be_doubtful(tiny):
     ("spoil", "words"),
     [
         (lambda b: replace(b, orientations=replace(b.orientations, system="phi-omega-kappa")),
-         "the angles are omega-phi-kappa, not phi-omega-kappa"),
+         "omega-phi-kappa, not phi-omega-kappa"),
         (lambda b: b.with_angles(b.orientations.angles_rad[:, [1, 0, 2]]),
-         "omega and phi are exchanged"),
+         "omega and phi"),
         (lambda b: replace(b, orientations=replace(
             b.orientations, position_m=b.orientations.position_m[:, [1, 0, 2]].copy())),
-         "x and y of the POS positions are exchanged"),
+         "x and y .*POS positions"),
         (lambda b: replace(b, tie_points=replace(
             b.tie_points, xy_px=b.tie_points.xy_px * [1.0, -1.0])),
-         "y of the image coordinates has the wrong sign"),
+         "y of .*wrong sign"),
         (lambda b: replace(b, ground_points=replace(
             b.ground_points, position_m=b.ground_points.position_m[:, [1, 0, 2]].copy())),
-         "x and y of the ground points are exchanged"),
+         "x and y .*ground points"),
     ],
 )  # fmt: skip
 def test_a_wrong_convention_is_named(tiny, spoil, words):

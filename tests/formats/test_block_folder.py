@@ -17,12 +17,12 @@ from posstats.formats.block_folder import read_block
 
 
 @pytest.mark.parametrize(
-    ("name", "n_images", "n_warnings"), [("ign-fd1305", 68, 2), ("seneca", 81, 2)]
+    ("name", "n_images", "n_notices"), [("ign-fd1305", 68, 2), ("seneca", 81, 2)]
 )
-def test_real_blocks_are_read(name, n_images, n_warnings) -> None:
+def test_real_blocks_are_read(name, n_images, n_notices) -> None:
     block = read_block(shared_path("data", name))
     assert len(block.orientations) == n_images
-    assert len(block.warnings) == n_warnings
+    assert len(block.notices) == n_notices
     for file, digest in block.inputs:
         content = shared_path("data", name, file).read_bytes()
         assert hashlib.sha256(content).hexdigest() == digest
@@ -49,8 +49,8 @@ def test_order_of_rows_changes_nothing(folder) -> None:
             assert np.array_equal(vars(getattr(after, part))[name], values, equal_nan=False) or (
                 np.array_equal(np.isnan(values), np.isnan(vars(getattr(after, part))[name]))
             )
-    assert [w for w in after.warnings if "out of time order" not in w] == list(before.warnings)
-    assert any("rows of orientations out of time order" in w for w in after.warnings)
+    assert after.notices[0].code == "rows_out_of_order"
+    assert after.notices[1:] == before.notices
 
 
 def test_byte_order_mark_windows_lines_and_extra_columns_change_nothing(folder) -> None:
@@ -79,7 +79,7 @@ def test_parquet_is_read_like_csv(folder) -> None:
     assert np.array_equal(
         after.ground_points.sigma_xy_m, before.ground_points.sigma_xy_m, equal_nan=True
     )
-    assert after.warnings == before.warnings
+    assert after.notices == before.notices
 
 
 def test_ids_are_text(folder) -> None:

@@ -15,6 +15,7 @@ from posstats.contract.files import as_values
 from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
+from posstats.reports.block.wording import warnings
 
 DOCS = ROOT / "docs"
 KEYS = runpy.run_path(str(DOCS / "keys.py"))
@@ -37,7 +38,7 @@ def test_the_example_of_the_block_format_is_a_block(tmp_path):
         "ground_points.csv",
     }
     read = read_block(tmp_path)
-    assert read.warnings == ()
+    assert read.notices == ()
     models = stereo_models(read)
     assert list(models.pairs.n_points) == [6]
     # made in the grid with 0.2 px of noise: q has 0.2 * sqrt(2) px, the frame adds a little
@@ -122,7 +123,7 @@ def test_the_worked_example_makes_the_block_it_shows(tmp_path, monkeypatch):
     apart = wrapped(made.orientations.angles_rad - given.orientations.angles_rad)
     assert np.abs(apart).max() < 1e-4
     text = page.read_text(encoding="utf-8")
-    assert all(f"warning: {warning}\n" in text for warning in made.warnings)
+    assert all(f"warning: {warning}\n" in text for warning in warnings(made.notices))
     assert f"{len(made.tie_points)} measurements of {len(made.tie_points.point_id)}" in text
 
 

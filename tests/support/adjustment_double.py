@@ -220,9 +220,7 @@ class _Double:
         )  # fmt: skip
 
     def cell(self, x_px: float, y_px: float) -> FormatCell:
-        """The largest in the middle: arrows beyond the format are not drawn."""
-        size = 2.5 if x_px == y_px == 0.0 else 1.0
         return FormatCell(
-            camera="left", x_px=x_px, y_px=y_px, n=20, dx_px=size * self.either(),
-            dy_px=size * self.either(), rms_px=self.some(),
+            camera="left", x_px=x_px, y_px=y_px, n=20, dx_px=self.either(), dy_px=self.either(),
+            rms_px=self.some(),
         )  # fmt: skip

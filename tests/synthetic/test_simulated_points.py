@@ -20,7 +20,7 @@ def test_surveyed_points_lie_in_the_block_and_are_seen_twice(distribution, n):
     spec = {"n": n, "distribution": distribution}
     block = simulate(scenario_with(check_points=spec, flight={"n_strips": 3}))
     assert len(block.ground_points) == n
-    assert block.warnings == ()
+    assert block.notices == ()
     plane = block.ground_points.position_m[:, :2]
     assert len(np.unique(plane.round(3), axis=0)) == n
     limit = block.adjusted.position_m[:, :2]
@@ -59,7 +59,7 @@ def test_a_long_cross_strip_does_not_draw_the_surveyed_points_out_of_the_block()
     spec = {"n": 15, "distribution": "corners"}
     block = simulate(scenario_with(flight=flight, check_points=spec))
     assert np.abs(block.ground_points.position_m[:, 0]).max() == pytest.approx(350.0)
-    assert block.warnings == ()
+    assert block.notices == ()
 
 
 def test_surveyed_points_have_their_own_image_and_ground_noise():

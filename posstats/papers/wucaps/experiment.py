@@ -180,7 +180,7 @@ def _without_strip_lines(analysis: Analysis) -> Orientations:
     ground = analysis.frames[0]
     pos = analysis.block.orientations
     lines = tuple(
-        Decision(angle, "ground", strip, True, "linear", "ols", "all", "")
+        Decision(angle, "ground", strip, True, "linear", "ols", "all")
         for strip in pos.strips
         for angle in ANGLE_NAMES
     )

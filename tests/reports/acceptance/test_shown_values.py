@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from shown_values import arrows, assert_cell, assert_column, on_ground, per_si, svgs_of, tables_of
 
+from posstats.contract.files import as_values
 from posstats.reports.acceptance.document import build
 from posstats.reports.figures import style
 
@@ -18,13 +19,19 @@ def few():
 
 
 @pytest.fixture(scope="module")
-def made():
-    return values.acceptance(MANY, sigma_m=0.062, seed=3)
+def document():
+    return build(values.acceptance(MANY, sigma_m=0.062, seed=3), RESULTS)
 
 
 @pytest.fixture(scope="module")
-def tables(made):
-    return tables_of(build(made, RESULTS))
+def made():
+    """The values of acceptance.json."""
+    return as_values(values.acceptance(MANY, sigma_m=0.062, seed=3))
+
+
+@pytest.fixture(scope="module")
+def tables(document):
+    return tables_of(document)
 
 
 def assert_intervals(column, rows):
@@ -81,7 +88,7 @@ def test_check_points_show_coordinates_differences_and_survey(made, tables):
 
 def test_slopes_stand_in_front_of_their_intervals(tables):
     table = tables["regression"]
-    rows = [row for row in RESULTS["regression"] if row["scope"] == "block"]
+    rows = [row for row in as_values(RESULTS)["regression"] if row["scope"] == "block"]
     keys = ("n", "slope_rad_per_s", "r_squared")
     for column, key in zip(table.columns[2:5], keys, strict=True):
         assert_column(column, [row[key] for row in rows])
@@ -94,17 +101,18 @@ def test_parallax_is_mean_and_largest_of_the_models_of_a_strip(tables):
     table = tables["parallax"]
     strips = table.columns[0].cells[:-1]
     for at, key in ((2, "pos_px"), (4, "corrected_px"), (6, "independent_px")):
-        of = [[m[key] for m in RESULTS["models"] if m["strip"] == strip] for strip in strips]
-        of.append([m[key] for m in RESULTS["models"]])
+        models = as_values(RESULTS)["models"]
+        of = [[m[key] for m in models if m["strip"] == strip] for strip in strips]
+        of.append([m[key] for m in models])
         assert_column(table.columns[at], [float(np.mean(part)) for part in of])
         assert_column(table.columns[at + 1], [max(part) for part in of])
 
 
 def test_arrows_at_few_points_are_their_differences(few):
-    points = [point for point in few["check_points"] if point["status"] == "ok"]
+    points = [point for point in few.check_points if point.status == "ok"]
     svg = svgs_of(build(few, RESULTS))["point_plan"]
-    places = np.array([(p["x_m"], p["y_m"]) for p in points])
-    difference = np.array([(p["dx_m"], p["dy_m"], p["dz_m"]) for p in points])
+    places = np.array([(p.x_m, p.y_m) for p in points])
+    difference = np.array([(p.dx_m, p.dy_m, p.dz_m) for p in points])
     up = np.column_stack([np.zeros(len(points)), difference[:, 2]])
     scales = []
     for colour, expected in ((style.BLUE, difference[:, :2]), (style.VERMILLION, up)):
@@ -117,3 +125,11 @@ def test_arrows_at_few_points_are_their_differences(few):
         assert scales[-1] > 0.0
         np.testing.assert_allclose(drawn / scales[-1], expected, atol=0.03 * np.abs(expected).max())
     assert scales[0] == pytest.approx(scales[1], rel=0.02)
+
+
+def test_key_figures_are_what_was_found_in_plan_then_in_height(made, document):
+    plan, height, points = document.key_figures
+    found = {row["id"]: row["found"] for row in made["requirements"]}
+    assert_cell(plan.value, found["rmse_h"], factor=per_si(plan.unit))
+    assert_cell(height.value, found["rmse_v"], factor=per_si(height.unit))
+    assert_cell(points.value, found["points"])

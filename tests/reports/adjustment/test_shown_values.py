@@ -20,6 +20,8 @@ from shown_values import (
 
 from posstats.contract.notice import Notice
 from posstats.reports.adjustment.document import build
+from posstats.reports.adjustment.parameters import SHOWN_CORRELATIONS, correlation_table
+from posstats.reports.adjustment.points import check_table, control_table
 from posstats.reports.adjustment.words import words_in
 from posstats.reports.figures import style
 
@@ -137,6 +139,25 @@ def test_correlations_are_shown_the_strongest_first(tables):
     assert "S2" in columns[1].cells[1]
 
 
+def test_correlations_beyond_the_first_are_counted(results):
+    pair = results.correlations[0]
+    many = tuple(replace(pair, second_scope=str(k), value=0.95 + 0.001 * k) for k in range(40))
+    table = correlation_table(words_in("en"), many)
+    assert len(table.rows) == SHOWN_CORRELATIONS
+    assert table.rows[0][1].endswith(" 39")
+    assert table.notes == (words_in("en").text("correlations.more", n="15"),)
+
+
+def test_points_that_tables_leave_out_are_counted(results):
+    words = words_in("en")
+    for n, notes in ((60, ()), (75, (words.text("table.more", n="15"),))):
+        control = control_table(words, results.control_points[:1] * n)
+        checks = check_table(words, results.check_point_residuals[:1] * n)
+        for table in (control, checks):
+            assert len(table.rows) == 60
+            assert table.notes == notes
+
+
 def test_orientations_show_sigma_and_pos_minus_adjusted(results, tables):
     columns, rows = tables["orientations"].columns, results.orientations
     assert_units(columns[1], rows)
@@ -209,7 +230,7 @@ def test_settings_are_those_that_were_asked_for(results, tables):
     words = words_in("en")
 
     def value(key):
-        return shown[words.text(f"setting.{key}")]
+        return shown[words.text(f"bundle_setting.{key}")]
 
     assert value("control") == "A, B"
     assert value("calibration") == "boresight.toml"

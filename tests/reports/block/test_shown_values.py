@@ -217,3 +217,14 @@ def test_arrows_of_check_points_are_differences_less_their_mean(area, turned):
     assert_alike(drawn_differences(svg, style.BLUE, points), difference[:, :2])
     up = np.column_stack([np.zeros(len(points)), difference[:, 2]])
     assert_alike(drawn_differences(svg, style.VERMILLION, points), up)
+
+
+def test_key_figures_are_parallax_in_the_order_of_its_decrease_and_plan_before_height(
+    area, document
+):
+    *parallax, points = document.key_figures
+    for figure, name in zip(parallax, ("raw", "corrected", "relative"), strict=True):
+        assert_cell(figure.value, area["verdict"][f"{name}_px"])
+    kept = the(area, "check_points", orientation="selected", translation_removed=False)
+    assert_cell(points.value, kept["rmse_horizontal_m"], kept["rmse_vertical_m"])
+    assert points.unit == "m"

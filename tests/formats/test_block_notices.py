@@ -1,15 +1,16 @@
-"""What a block is warned of when it is read."""
+"""What is odd about a block when it is read."""
 
 from dataclasses import replace
 
 import pandas as pd
 from perfect_block import edit, perfect_block, written
 
+from posstats.contract.notice import Notice, listing
 from posstats.formats.block_folder import read_block
 
 
-def test_a_perfect_block_gives_no_warning(folder) -> None:
-    assert read_block(folder).warnings == ()
+def test_a_perfect_block_gives_no_notice(folder) -> None:
+    assert read_block(folder).notices == ()
 
 
 def test_oddities_are_counted_and_named(folder) -> None:
@@ -22,17 +23,13 @@ def test_oddities_are_counted_and_named(folder) -> None:
     table = pd.read_csv(folder / "orientations.csv", dtype=str)
     table.loc[7, "strip"] = "9"
     table.iloc[[1, 0, *range(2, 8)]].to_csv(folder / "orientations.csv", index=False)
-    warnings = read_block(folder).warnings
-    assert "1 row of orientations out of time order: 1_000." in warnings
-    assert "1 image without tie points: 1_003." in warnings
-    assert "1 strip of one image: 9." in warnings
-    assert any(
-        "stereo model with fewer than 6 common points" in w and "1_002 - 1_003" in w
-        for w in warnings
-    )
-    seen_once = next(w for w in warnings if "seen in one image only" in w)
-    assert f"{free[0]}, {free[1]}, " in seen_once
-    assert seen_once.endswith("more.")
+    found = {each.code: each.values for each in read_block(folder).notices}
+    assert found["rows_out_of_order"] == {"n": 1, "ids": ("1_000",)}
+    assert found["images_without_tie_points"] == {"n": 1, "ids": ("1_003",)}
+    assert found["strips_of_one_image"] == {"n": 1, "ids": ("9",)}
+    assert found["models_with_few_points"] == {"n": 1, "ids": ("1_002 - 1_003",), "n_needed": 6}
+    assert found["tie_points_seen_once"]["n"] >= 6
+    assert found["tie_points_seen_once"]["ids"] == tuple(free[:5])
 
 
 def test_assumed_accuracy_is_named(folder) -> None:
@@ -42,15 +39,14 @@ def test_assumed_accuracy_is_named(folder) -> None:
     )
     block = read_block(folder)
     assert block.accuracy.position_m == 0.1
-    assert block.warnings == (
-        "The accuracy is not stated in full; assumed: angle_deg = 0.005, image_px = 0.2.",
-    )
+    lines = ("angle_deg = 0.005", "image_px = 0.2")
+    assert block.notices == (Notice(code="accuracy_assumed", values={"lines": lines}),)
 
 
 def test_orthometric_heights_without_geoid_are_named(tmp_path) -> None:
     folder = written(perfect_block("EPSG:2154"), tmp_path)
     edit(folder, "block.toml", ('"ellipsoidal"', '"orthometric"'))
-    assert "taken as ellipsoidal" in read_block(folder).warnings[0]
+    assert read_block(folder).notices[0].code == "heights_without_geoid"
 
 
 def test_ground_points_without_measurements_are_named(tmp_path) -> None:
@@ -58,8 +54,8 @@ def test_ground_points_without_measurements_are_named(tmp_path) -> None:
     renamed = block.ground_points.point.copy()
     renamed[0] = "lost"
     block = replace(block, ground_points=replace(block.ground_points, point=renamed))
-    warnings = read_block(written(block, tmp_path)).warnings
-    assert warnings == ("1 ground point measured in fewer than two images: lost.",)
+    notices = read_block(written(block, tmp_path)).notices
+    assert notices == listing("ground_points_with_few_rays", ["lost"])
 
 
 def test_models_without_base_are_named(folder) -> None:
@@ -69,7 +65,5 @@ def test_models_without_base_are_named(folder) -> None:
     table.loc[5, ["x", "y", "z"]] = table.loc[4, ["x", "y", "z"]].to_numpy()
     table.loc[5, "x"] = str(float(table.loc[4, "x"]) + 0.03)  # stated accuracy: 0.05 m
     table.to_csv(folder / "orientations.csv", index=False)
-    assert read_block(folder).warnings == (
-        "2 stereo models with a base shorter than the accuracy of their positions:"
-        " 1_000 - 1_001, 2_000 - 2_001.",
-    )
+    short = ["1_000 - 1_001", "2_000 - 2_001"]
+    assert read_block(folder).notices == listing("models_with_short_base", short)
