@@ -69,8 +69,4 @@ def build(results: AdjustmentResults, language: str = "en") -> ReportDocument:
 
 def _families(words: Words) -> tuple[str, ...]:
     """Families of the texts in figures."""
-<<<<<<< HEAD
-    return cjk.figure_families(words.text("axis.east"))
-=======
     return cjk.figure_families(words.text("bundle_axis.east"))
->>>>>>> main

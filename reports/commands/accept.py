@@ -117,11 +117,7 @@ def _results(
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
-<<<<<<< HEAD
-    found = results(analysis, created=now())
-=======
     found = with_words(results(analysis, created=now()))
->>>>>>> main
     text = to_json(found).encode("utf-8")
     return found, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
 

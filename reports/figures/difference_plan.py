@@ -56,13 +56,8 @@ def difference_plan(
     panels = [panel for panel in panels if panel.points]
     if not panels:
         return None
-<<<<<<< HEAD
-    points = ((point.x_m, point.y_m) for point in panels[0].points)
-    view = view_of(images) if images else view_around(points)
-=======
     shown = [(point.x_m, point.y_m) for point in panels[0].points]
     view = view_of(images) if images else view_around(shown)
->>>>>>> main
     figure, axes = _panels(view, len(panels))
     for axis, panel in zip(axes, panels, strict=True):
         _images_behind(axis, view, images)

@@ -137,11 +137,7 @@ def test_drifts_that_were_taken_off_are_not_tested_and_holm_counts_the_others():
 def test_the_survey_of_the_contract_stands_in_where_the_block_states_none():
     first, *others = residual_rows(HAND, sigma_xy_m=None, sigma_z_m=None)
     rows = (replace(first, survey_sigma_xy_m=0.03), *others)
-<<<<<<< HEAD
-    with pytest.raises(Unavailable, match="survey accuracy not stated"):
-=======
     with pytest.raises(Unavailable, match="accuracy not stated"):
->>>>>>> main
         found("survey_h", check_point_residuals=rows)
     stated = Product(survey_sigma_h_m=0.01, survey_sigma_v_m=0.05)
     # the larger of both counts
