@@ -99,8 +99,8 @@ def run_tests(tree: Path, tests: Sequence[str], most_s: float | None = MOST_S) -
         )
     except subprocess.TimeoutExpired:
         return None
-    if done.returncode not in (PASSED, FAILED):
-        print(done.stdout.decode()[-2000:], file=sys.stderr)
+    if done.returncode not in (PASSED, FAILED) or (done.returncode == FAILED and most_s is None):
+        print(done.stdout.decode()[-3000:], file=sys.stderr)
     return done.returncode
 
 
