@@ -110,7 +110,7 @@ def judge(mutant: Mutant, sound: Path) -> str:
     It is put into a copy of the sound tree. Times of files are kept: kernels that were compiled
     there stay valid for files that do not change, and for no others.
     """
-    if (n := mutant.count()) != 1:
+    if (n := mutant.count(sound)) != 1:
         return f"STALE ({n} times in {mutant.file})"
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
         tree = Path(shutil.copytree(sound, Path(folder, "tree"), symlinks=True))
