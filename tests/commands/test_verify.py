@@ -12,8 +12,6 @@ from archive_documents import (
     document,
     p12,
     pem,
-    reassess,
-    render_document,
     results_of,
     write_inputs,
 )
@@ -40,10 +38,7 @@ COMMAND = Path(sys.executable).with_name("posstats")
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
     """A document, its inputs, and a key; the steps of the small document are the installed ones."""
-    monkeypatch.setattr(verify_command, "reassess", reassess)
-    monkeypatch.setattr(verify_command, "render_document", render_document)
-    monkeypatch.setattr(verify_command, "recompute", STEPS.recompute)
-    monkeypatch.setattr(verify_command, "versions", lambda: {"numpy": "2.4"})
+    monkeypatch.setattr(verify_command, "steps", lambda: STEPS)
     monkeypatch.chdir(tmp_path)
     write_inputs(tmp_path / "block")
     Path("a.pdf").write_bytes(document(results_of(tmp_path / "block")))
