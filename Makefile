@@ -20,6 +20,8 @@ paper: $(READY)  ## Repeat the source paper's experiment and write its report
 .PHONY: test
 test: $(READY) lint types  ## Run all checks and tests
 	@.ci/debian-packages --pango
+	@.ci/debian-packages --browser
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/support/compile_kernels.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -q -n 2 --dist loadgroup
 
 .PHONY: lint
@@ -42,9 +44,18 @@ coverage: $(READY)  ## Simulate how often 95 % intervals hold the truth (many mi
 	$(BIN)/python benchmarks/bundle_coverage.py
 	$(BIN)/python benchmarks/acceptance_coverage.py
 
+.PHONY: mutants
+mutants: $(READY)  ## Put kept faults into copies of the source: the tests must find each (many minutes)
+	@.ci/debian-packages --pango
+	$(BIN)/python benchmarks/mutants.py
+
 .PHONY: seeds
 seeds: $(READY)  ## Repeat the paper's experiment with 100 seeds and store the findings (half an hour)
 	$(BIN)/python benchmarks/paper_seeds.py
+
+.PHONY: docs
+docs: $(READY)  ## Make the tables of keys in docs/ anew from the contract
+	$(BIN)/python docs/keys.py
 
 .PHONY: clean
 clean:  ## Remove the environment and all output

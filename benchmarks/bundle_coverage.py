@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
+from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.block_problem import bundle_problem
-from posstats.adjustment.settings import DriftScope, SelfCalibration, additional_parameters
 from posstats.block.model import Accuracy, Block, GroundPoints, Orientations
+from posstats.contract.choices import DriftScope, SelfCalibration
 from posstats.geometry.ground.check_points import surveyed_check_points
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_angles, wrapped
 from posstats.synthetic import load_scenario, simulate

@@ -10,12 +10,13 @@ from posstats.version import __version__
 
 if TYPE_CHECKING:
     from posstats.analysis.regression import fit_drift
-    from posstats.analysis.steps import Settings, analyse
+    from posstats.analysis.steps import analyse
     from posstats.block.image_pairs import stereo_models
     from posstats.block.model import Block
     from posstats.errors import BlockFormatError, ConvergenceError, GeometryError, PosstatsError
     from posstats.formats.block_folder import read_block
     from posstats.geometry.stereo.relative_orientation import orient
+    from posstats.settings import Settings
 
 _HOME = {
     "Block": "block.model",
@@ -23,7 +24,7 @@ _HOME = {
     "ConvergenceError": "errors",
     "GeometryError": "errors",
     "PosstatsError": "errors",
-    "Settings": "analysis.steps",
+    "Settings": "settings",
     "analyse": "analysis.steps",
     "fit_drift": "analysis.regression",
     "orient": "geometry.stereo.relative_orientation",

@@ -7,21 +7,24 @@ them, and where an interval holds the limit, the number of check points that wou
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.formula import MissingProductValue
 from posstats.acceptance.product import Product
-from posstats.acceptance.profile import Component, Profile, Requirement
+from posstats.acceptance.profile import Profile, Requirement
 from posstats.acceptance.published import gbt_grade, gbt_score
 from posstats.acceptance.quantities import Found, Question, find
 from posstats.acceptance.reasons import Reason, Unavailable
+from posstats.contract.acceptance import (
+    ChosenStatement,
+    Grade,
+    Judgement,
+    StatedComponent,
+    StatementKind,
+    Verdict,
+)
 from posstats.errors import PosstatsError
 from posstats.statistics.rmse import n_to_decide
-
-Judgement = Literal["pass", "fail", "not assessed"]
-Verdict = Literal["accepted", "rejected", "not assessable"]
-StatementKind = Literal["tested", "tested_with_fewer", "produced"]
 
 _CLASS = {"horizontal": "class_h", "vertical": "class_v"}
 
@@ -59,18 +62,6 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class ChosenStatement:
-    """The standard's own wording for a component: a template, and its numbers in metres."""
-
-    component: Component
-    kind: StatementKind
-    template: str
-    class_m: float | None
-    found_m: float | None
-    n_points: int
-
-
-@dataclass(frozen=True)
 class Assessment:
     """The verdict on one orientation.
 
@@ -91,7 +82,7 @@ class Assessment:
     findings: tuple[Finding, ...]
     verdict: Verdict
     score: float | None
-    grade: str | None
+    grade: Grade | None
     statements: tuple[ChosenStatement, ...] = ()
 
 
@@ -128,7 +119,7 @@ def assess(
     return replace(assessed, statements=_statements(assessed, language))
 
 
-def _quality(findings: Sequence[Finding]) -> tuple[float | None, str | None]:
+def _quality(findings: Sequence[Finding]) -> tuple[float | None, Grade | None]:
     """The smallest score and its grade: a quality is as good as its worst part."""
     bases = [each for each in findings if each.requirement.basis_of_score]
     if not bases or any(each.found is None for each in bases):
@@ -211,12 +202,14 @@ def _deciding_number(found: Found, limit: float) -> int | None:
 
 
 def _statements(assessed: Assessment, language: str) -> tuple[ChosenStatement, ...]:
-    components: tuple[Component, ...] = ("horizontal", "vertical")
+    components: tuple[StatedComponent, ...] = ("horizontal", "vertical")
     chosen = (_statement(assessed, each, language) for each in components)
     return tuple(each for each in chosen if each is not None)
 
 
-def _statement(assessed: Assessment, component: Component, language: str) -> ChosenStatement | None:
+def _statement(
+    assessed: Assessment, component: StatedComponent, language: str
+) -> ChosenStatement | None:
     """What the standard has said of a component; nothing where a claim of it was not found.
 
     Nor of a product that is rejected: the words would be read without the verdict.
@@ -236,5 +229,11 @@ def _statement(assessed: Assessment, component: Component, language: str) -> Cho
     template: str = getattr(wording, kind)
     if not template:
         return None
-    class_m = assessed.product.value(_CLASS[component])
-    return ChosenStatement(component, kind, template, class_m, claims[0].found, n)
+    return ChosenStatement(
+        component=component,
+        kind=kind,
+        template=template,
+        class_m=assessed.product.value(_CLASS[component]),
+        found_m=claims[0].found,
+        n_points=n,
+    )

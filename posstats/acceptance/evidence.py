@@ -4,29 +4,33 @@ The mean shift of the check points is kept everywhere: a shift estimated from th
 judge a product would flatter it.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
 from posstats.acceptance.product import Product
 from posstats.arrays import Floats
 from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.choices import JudgedOrientation
 from posstats.contract.results import ModelParallax, Regression, Results
 from posstats.contract.survey import ImagePlace
 from posstats.errors import PosstatsError
 
-ORIENTATIONS = ("bundle", "adjusted", "selected", "pos")
+ORIENTATIONS: tuple[JudgedOrientation, ...] = get_args(JudgedOrientation)
 """What can be assessed; without a choice the first that the results hold. The order is that of
 what entered the orientation, never that of the outcome at the check points."""
 
-PARALLAX: dict[str, Callable[[ModelParallax], float | None]] = {
-    "pos": lambda model: model.pos_px,
-    "selected": lambda model: model.corrected_px,
-    "adjusted": lambda model: model.adjusted_px,
-    "bundle": lambda model: model.bundle_px,
-}
-"""RMS vertical parallax of a model from each orientation."""
+
+def model_parallax_px(model: ModelParallax, orientation: JudgedOrientation) -> float | None:
+    """Vertical parallax of a stereo model from an orientation; None if it is not known."""
+    return {
+        "pos": model.pos_px,
+        "selected": model.corrected_px,
+        "adjusted": model.adjusted_px,
+        "bundle": model.bundle_px,
+    }[orientation]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,7 @@ class Evidence:
         drift; 1 if every one was taken off; NaN where they are not known.
     """
 
-    orientation: str
+    orientation: JudgedOrientation
     point: tuple[str, ...]
     difference_m: Floats
     survey_h_m: Floats
@@ -72,7 +76,7 @@ class Evidence:
         return len(self.point)
 
 
-def best_orientation(results: Results) -> str:
+def best_orientation(results: Results) -> JudgedOrientation:
     """The first of `ORIENTATIONS` that the results hold.
 
     Raises
@@ -86,20 +90,16 @@ def best_orientation(results: Results) -> str:
     return held[0]
 
 
-def _held(results: Results) -> list[str]:
+def _held(results: Results) -> list[JudgedOrientation]:
     named = {row.orientation for row in results.check_points}
     return [name for name in ORIENTATIONS if name in named]
 
 
-def evidence(results: Results, orientation: str, product: Product) -> Evidence:
+def evidence(results: Results, orientation: JudgedOrientation, product: Product) -> Evidence:
     """Collect the evidence.
 
     Parameters
     ----------
-    results
-        Of an analysis.
-    orientation
-        One of `ORIENTATIONS`.
     product
         Its accuracy of the survey counts where the block states none, or a smaller one.
 
@@ -113,32 +113,33 @@ def evidence(results: Results, orientation: str, product: Product) -> Evidence:
         raise PosstatsError(
             f"the results hold no orientation {orientation}: choose one of {', '.join(held)}"
         )
-    rows = [r for r in results.check_point_residuals if r.orientation == orientation]
+    rows = [row for row in results.check_point_residuals if row.orientation == orientation]
     good = [row for row in rows if row.status == "ok"]
     survey_h, survey_v = _survey(good, product)
     bundle = results.bundle if orientation == "bundle" else None
     return Evidence(
         orientation=orientation,
         point=tuple(row.point for row in good),
-        difference_m=_columns([(row.dx_m, row.dy_m, row.dz_m) for row in good], 3),
+        difference_m=_columns((row.dx_m, row.dy_m, row.dz_m) for row in good),
         survey_h_m=survey_h,
         survey_v_m=survey_v,
         n_given=len(rows),
         quadrant_share=_quadrant_share(results.images, good),
-        parallax_px=_parallax(map(PARALLAX[orientation], results.models)),
-        image_rms_px=_number(bundle.image_rms_px if bundle else None),
-        sigma0=_number(bundle.sigma0 if bundle else None),
+        parallax_px=_parallax(results.models, orientation),
+        image_rms_px=float("nan") if bundle is None else _number(bundle.image_rms_px),
+        sigma0=float("nan") if bundle is None else _number(bundle.sigma0),
         drift_p=_remaining_drift(results, orientation),
     )
 
 
 def _number(value: float | None) -> float:
-    return float("nan") if value is None else float(value)
+    return float("nan") if value is None else value
 
 
-def _columns(rows: Sequence[Sequence[float | None]], k: int) -> Floats:
-    """(n, k), NaN where null."""
-    return np.array(rows, dtype=float).reshape(len(rows), k)
+def _columns(rows: Iterable[tuple[float | None, float | None, float | None]]) -> Floats:
+    """(n, 3), NaN where nothing is known."""
+    values = [[_number(value) for value in row] for row in rows]
+    return np.array(values, dtype=float).reshape(len(values), 3)
 
 
 def _survey(rows: Sequence[CheckPointResidual], product: Product) -> tuple[Floats, Floats]:
@@ -146,8 +147,8 @@ def _survey(rows: Sequence[CheckPointResidual], product: Product) -> tuple[Float
 
     Where both block and product state one, the larger counts: neither may flatter the product.
     """
-    stated = _columns([(row.survey_sigma_xy_m, row.survey_sigma_z_m) for row in rows], 2)
-    horizontal, vertical = np.sqrt(2.0) * stated[:, 0], stated[:, 1]
+    horizontal = np.sqrt(2.0) * np.array([_number(row.survey_sigma_xy_m) for row in rows])
+    vertical = np.array([_number(row.survey_sigma_z_m) for row in rows])
     return (
         np.fmax(horizontal, _number(product.survey_sigma_h_m)),
         np.fmax(vertical, _number(product.survey_sigma_v_m)),
@@ -156,23 +157,22 @@ def _survey(rows: Sequence[CheckPointResidual], product: Product) -> tuple[Float
 
 def _quadrant_share(images: Sequence[ImagePlace], points: Sequence[CheckPointResidual]) -> float:
     """Quadrants of the rectangle, along the crs axes, around the ground that the images show."""
-    corners = [corner for row in images for corner in row.footprint or ()]
+    corners = [corner for image in images for corner in image.footprint or ()]
     if not corners or not points:
         return float("nan")
     plan = np.array(corners, dtype=float)
     middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
-    east, north = (_columns([(point.x_m, point.y_m) for point in points], 2) > middle).T
+    east, north = (np.array([(point.x_m, point.y_m) for point in points]) > middle).T
     counts = np.bincount(2 * east + north, minlength=4)
     return float(counts.min() / len(points))
 
 
-def _parallax(values: Iterable[float | None]) -> Floats:
-    numbers = map(_number, values)
+def _parallax(models: Sequence[ModelParallax], orientation: JudgedOrientation) -> Floats:
+    numbers = (_number(model_parallax_px(model, orientation)) for model in models)
     return np.array([number for number in numbers if np.isfinite(number)], dtype=float)
 
 
-def _remaining_drift(results: Results, orientation: str) -> float:
-    tested: list[tuple[str, str, str]]
+def _remaining_drift(results: Results, orientation: JudgedOrientation) -> float:
     if orientation == "pos":
         tested = [("ground", angle, "block") for angle in ("omega", "phi", "kappa")]
     elif orientation == "selected":
@@ -190,5 +190,4 @@ def _remaining_drift(results: Results, orientation: str) -> float:
 
 def _drift_p(fit: Regression) -> float:
     """Of GLS, which is honest about correlated errors; of OLS where errors have no covariance."""
-    honest = _number(fit.gls_p_value)
-    return _number(fit.p_value) if np.isnan(honest) else honest
+    return _number(fit.p_value if fit.gls_p_value is None else fit.gls_p_value)

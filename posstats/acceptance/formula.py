@@ -18,7 +18,7 @@ from types import MappingProxyType
 from posstats.acceptance.product import FORMULA_NAMES, Product
 from posstats.acceptance.published import gbt_sample_size
 from posstats.errors import PosstatsError
-from posstats.formats.toml_section import nearest, shown
+from posstats.formats.hints import nearest, shown
 
 _LARGEST = 1e9
 """Limits beyond this (m, px, counts) are slips of the pen."""

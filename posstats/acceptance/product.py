@@ -1,11 +1,12 @@
 """What a delivered product is stated to be: the values that limits are functions of."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
-from typing import Literal
 
-Terrain = Literal["flat", "mountain"]
+from posstats.contract.choices import TerrainKind
+from posstats.formats.toml_document import Conflict
+from posstats.formats.toml_types import Count, Positive
 
 FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
     {
@@ -43,15 +44,21 @@ class Product:
         Accuracy of the check points' survey, m: radial horizontal, and vertical.
     """
 
-    class_h_m: float | None = None
-    class_v_m: float | None = None
-    gsd_m: float | None = None
-    map_scale: float | None = None
-    terrain: Terrain | None = None
-    lot_size: int | None = None
-    sample_size: int | None = None
-    survey_sigma_h_m: float | None = None
-    survey_sigma_v_m: float | None = None
+    class_h_m: Positive | None = None
+    class_v_m: Positive | None = None
+    gsd_m: Positive | None = None
+    map_scale: Positive | None = None
+    terrain: TerrainKind | None = None
+    lot_size: Count | None = None
+    sample_size: Count | None = None
+    survey_sigma_h_m: Positive | None = None
+    survey_sigma_v_m: Positive | None = None
+
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values of a file that contradict each other."""
+        lot, sample = self.lot_size, self.sample_size
+        if lot is not None and sample is not None and sample > lot:
+            yield ("sample_size",), f"found {sample}, expected at most the lot_size, {lot}"
 
     def value(self, name: str) -> float | None:
         """The value that a formula's name stands for, None if the product states none."""

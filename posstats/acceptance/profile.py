@@ -2,17 +2,17 @@
 
 import hashlib
 from dataclasses import dataclass, field, fields
-from typing import Literal
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
-from posstats.acceptance.product import Product, Terrain
+from posstats.acceptance.product import Product
+from posstats.acceptance.profile_values import Date, Text
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
-
-Exceeding = Literal["fail", "investigate"]
-Component = Literal["horizontal", "vertical"]
+from posstats.contract.acceptance import Exceeding, StatedComponent
+from posstats.contract.choices import TerrainKind
 
 __all__ = [
     "Contract",
+    "Parties",
     "Product",
     "Profile",
     "ProfileFile",
@@ -61,7 +61,7 @@ class Requirement:
     mandatory: bool = True
     exceeding: Exceeding = "fail"
     threshold: Formula | None = None
-    terrain: Terrain | None = None
+    terrain: TerrainKind | None = None
     when_given: str | None = None
     basis_of_score: bool = False
 
@@ -105,7 +105,7 @@ class Statement:
         claim what was not tested, and are not to be used.
     """
 
-    component: Component
+    component: StatedComponent
     language: str = "en"
     least_points: int = 1
     tested: str = ""
@@ -129,22 +129,25 @@ class ProfileFile:
 
 
 @dataclass(frozen=True)
-class Contract:
-    """Who delivers what to whom, as the contract file says it; "" where it does not.
+class Parties:
+    """Who delivers what to whom, as ``[contract]`` says it; "" where it does not."""
 
-    `product` holds what the file states of the product.
-    """
+    number: Text = ""
+    title: Text = ""
+    client: Text = ""
+    contractor: Text = ""
+    inspector: Text = ""
+    flight: Text = ""
+    flight_date: Date = ""
+    sensor: Text = ""
+    place: Text = ""
+    remarks: Text = ""
 
-    number: str = ""
-    title: str = ""
-    client: str = ""
-    contractor: str = ""
-    inspector: str = ""
-    flight: str = ""
-    flight_date: str = ""
-    sensor: str = ""
-    place: str = ""
-    remarks: str = ""
+
+@dataclass(frozen=True)
+class Contract(Parties):
+    """A contract file: the parties, and in `product` what it states of the product."""
+
     product: Product = field(default_factory=Product)
 
 
@@ -186,7 +189,7 @@ class Profile:
         """The requirements that apply to a product, in order; possibly none."""
         return tuple(each for each in self.requirements if each.applies_to(product))
 
-    def statement(self, component: Component, language: str = "en") -> Statement | None:
+    def statement(self, component: StatedComponent, language: str = "en") -> Statement | None:
         """The wording for a component in a language, else in English; None without one.
 
         One that is withheld because a contract changed what it rests on counts as none.

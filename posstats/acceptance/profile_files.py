@@ -8,9 +8,9 @@ from pathlib import Path
 
 from posstats.acceptance.profile import Contract, Profile, ProfileFile
 from posstats.acceptance.profile_merging import merged
-from posstats.acceptance.profile_reading import parsed, read_content
+from posstats.acceptance.profile_reading import open_profile, read_content
 from posstats.errors import BlockFormatError, PosstatsError
-from posstats.formats.toml_section import line_of_section, nearest, shown
+from posstats.formats.hints import nearest, shown
 
 _MAX_BYTES = 100_000
 _MAX_FILES = 10
@@ -83,9 +83,9 @@ def profile_of_files(read: Sequence[ProfileFile]) -> tuple[Profile | None, Contr
     ProfileFormatError
         As for `load_contract`.
     """
-    findings: list[str] = []
-    contents = [read_content(file, findings) for file in read]
-    profile, contract = merged(contents, findings)
+    contents = [read_content(file) for file in read]
+    profile, contract = merged(contents)
+    findings = [finding for content in contents for finding in content.findings]
     if findings:
         raise ProfileFormatError(findings)
     return profile, contract
@@ -132,22 +132,22 @@ def _base(base: str | Path, places: Sequence[str]) -> Traversable | None:
 
 def _extended(file: ProfileFile, place: Traversable, places: Sequence[str]) -> Traversable | None:
     """The file that a file extends."""
-    findings: list[str] = []
-    raw, text = parsed(file, findings)
-    if findings:
-        raise ProfileFormatError(findings)
-    name = raw.get("extends")
+    document = open_profile(file)
+    if document.findings:
+        raise ProfileFormatError(document.findings)
+    name = document.values.get("extends")
     if not isinstance(name, str) or not name.strip():
         return None  # of another type: refused when the file is read
-    where = f"{file.name}{line_of_section(text, 'extends')}, extends"
     folder = place.parent if isinstance(place, Path) else Path()
     extended = _located(name, folder)
     if extended is None:
         known = nearest(name, profile_names())
-        raise ProfileFormatError([f"{where}: found no file {shown(name)} and no profile{known}"])
-    if _identity(extended) in places:
+        document.refuse(("extends",), f"found no file {shown(name)} and no profile{known}")
+    elif _identity(extended) in places:
         names = " -> ".join(Path(each).name for each in [*places, _identity(extended)])
-        raise ProfileFormatError([f"{where}: found a circle: {names}"])
+        document.refuse(("extends",), f"found a circle: {names}")
+    if document.findings:
+        raise ProfileFormatError(document.findings)
     return extended
 
 

@@ -7,10 +7,11 @@ from typing import Any
 
 from posstats.acceptance.formula import Formula, FormulaError, limit_formula
 from posstats.acceptance.product import Product
-from posstats.acceptance.profile import Contract, Profile, Requirement, Statement
+from posstats.acceptance.profile import Contract, Parties, Profile, Requirement, Statement
 from posstats.acceptance.profile_reading import ALWAYS, ANY_TERRAIN, FileContent, TableOfFile
+from posstats.acceptance.profile_values import alternatives
 from posstats.acceptance.quantity_names import COUNTED_BEYOND, QUANTITIES
-from posstats.formats.toml_section import TomlSection, nearest
+from posstats.formats.hints import nearest
 
 _NUMBERS = ("quantity", "limit", "threshold")
 _HEAD = ("name", "edition", "title", "source", "needs", "scales")
@@ -30,25 +31,25 @@ class _Merged:
     named: set[str] = field(default_factory=set)
 
 
-def merged(contents: Sequence[FileContent], findings: list[str]) -> tuple[Profile | None, Contract]:
+def merged(contents: Sequence[FileContent]) -> tuple[Profile | None, Contract]:
     """Profile and contract of files, the one that extends all others first.
 
-    The profile is None if no file has a requirement. What is wrong is added to `findings`.
+    The profile is None if no file has a requirement, or if there are findings: what is wrong is
+    added to those of the files.
     """
     state = _Merged()
     base_first = list(reversed(contents))
     for number, content in enumerate(base_first):
         _extend(state, content, is_base=number == 0)
-    if not findings:
+    if not any(content.findings for content in contents):
         _refuse_emptiness(state, contents[0])
-    if findings:
+    if any(content.findings for content in contents):
         return None, Contract()
-    product = Product()
-    parties: dict[str, str] = {}
+    product, parties = Product(), Parties()
     for content in base_first:
-        product = product.updated(Product(**content.product))
-        parties |= content.contract
-    contract = Contract(**parties, product=product)
+        product = product.updated(Product(**content.product.values))
+        parties = replace(parties, **content.contract.values)
+    contract = Contract(**vars(parties), product=product)
     return (_profile(state, contents) if state.requirements else None), contract
 
 
@@ -69,13 +70,15 @@ def _profile(state: _Merged, contents: Sequence[FileContent]) -> Profile:
 
 def _extend(state: _Merged, content: FileContent, is_base: bool) -> None:
     """Add a file to those that it extends."""
-    state.head |= {key: content.head[key] for key in _HEAD if key in content.head}
-    state.notes += content.head.get("notes", ())
+    state.head |= {key: content.top.values[key] for key in _HEAD if key in content.top.values}
+    if "needs" in content.top.values:
+        state.head["needs"] = tuple(map(alternatives, content.top.values["needs"]))
+    state.notes += content.top.values.get("notes", ())
     touched = _omit(state, content)
     given: set[str] = set()
     for table in content.requirements:
         id_ = table.values.get("id")
-        if id_ is None or _is_repeated(table.section, id_, given, content):
+        if id_ is None or _is_repeated(table, id_, given, content):
             continue
         old = state.requirements.get(id_)
         new = _requirement(table, old, state, content.file.name)
@@ -101,7 +104,7 @@ def _put(state: _Merged, old: Requirement | None, new: Requirement, is_base: boo
 def _omit(state: _Merged, content: FileContent) -> set[str]:
     """Leave out what a file omits; the ids."""
     omitted = set()
-    for id_ in content.head.get("omit", ()):
+    for id_ in content.top.values.get("omit", ()):
         if id_ in state.requirements:
             del state.requirements[id_]
             state.omitted[id_] = None
@@ -114,14 +117,14 @@ def _omit(state: _Merged, content: FileContent) -> set[str]:
     return omitted
 
 
-def _is_repeated(section: TomlSection, id_: str, given: set[str], content: FileContent) -> bool:
+def _is_repeated(table: TableOfFile, id_: str, given: set[str], content: FileContent) -> bool:
     """Whether a file speaks of a requirement twice, which is a finding."""
     if id_ in given:
-        section.refuse("id", f"found {id_!r} a second time, expected each id once")
+        table.refuse("id", f"found {id_!r} a second time, expected each id once")
         return True
     given.add(id_)
-    if id_ in content.head.get("omit", ()):
-        section.refuse("id", f"found {id_!r}, which omit leaves out")
+    if id_ in content.top.values.get("omit", ()):
+        table.refuse("id", f"found {id_!r}, which omit leaves out")
         return True
     return False
 
@@ -130,39 +133,32 @@ def _requirement(
     table: TableOfFile, old: Requirement | None, state: _Merged, file_name: str
 ) -> Requirement | None:
     """The requirement of a table, or what it makes of the one of the same id."""
-    section = table.section
-    before = len(section.findings)
     values = dict(table.values)
     if not _is_complete(table, old, state):
         return None
     quantity = values.get("quantity", old.quantity if old else "")
     if quantity not in QUANTITIES:
         return None  # refused when it was read
-    values |= _formulas(values, section, quantity)
+    values |= _formulas(values, table, quantity)
     unconditional = {"terrain": ANY_TERRAIN, "when_given": ALWAYS}
     values |= {key: None for key, word in unconditional.items() if values.get(key) == word}
     if old is None or any(key in values for key in _NUMBERS):
         values = {"source": file_name, "clause": ""} | values
     if old is not None and quantity not in COUNTED_BEYOND:
         values = {"threshold": None} | values
-    if len(section.findings) > before or not _was_read(table):
+    if not table.is_right:
         return None
     new = Requirement(**values) if old is None else replace(old, **values)
-    _refuse_contradictions(new, section)
+    _refuse_contradictions(new, table)
     return new
-
-
-def _was_read(table: TableOfFile) -> bool:
-    """Whether no key of the table was refused when it was read."""
-    return set(table.section.values) == set(table.values)
 
 
 def _is_complete(table: TableOfFile, old: Requirement | None, state: _Merged) -> bool:
     """Whether a table has what it must have; what is missing is a finding."""
-    section, given = table.section, table.section.values
+    given = table.given
     if old is None and state.requirements and "quantity" not in given:
         known = nearest(table.values["id"], state.requirements)
-        section.refuse(
+        table.refuse(
             "id", f"found {table.values['id']!r}{known} (a new one needs quantity and limit)"
         )
         return False
@@ -170,11 +166,11 @@ def _is_complete(table: TableOfFile, old: Requirement | None, state: _Merged) ->
     if old is not None and table.values.get("quantity", old.quantity) != old.quantity:
         missing = [] if "limit" in given else ["limit"]
     for key in missing:
-        section.refuse(key, f"found nothing, expected the {key} of {table.values['id']!r}")
+        table.refuse(key, f"found nothing, expected the {key} of {table.values['id']!r}")
     return not missing
 
 
-def _formulas(values: dict[str, Any], section: TomlSection, quantity: str) -> dict[str, Formula]:
+def _formulas(values: dict[str, Any], table: TableOfFile, quantity: str) -> dict[str, Formula]:
     """Limit and threshold of a table, those that are given and right."""
     units = {"limit": QUANTITIES[quantity].unit, "threshold": COUNTED_BEYOND.get(quantity, "1")}
     formulas = {}
@@ -183,23 +179,23 @@ def _formulas(values: dict[str, Any], section: TomlSection, quantity: str) -> di
             try:
                 formulas[key] = limit_formula(values[key], units[key])
             except FormulaError as error:
-                section.refuse(key, f"found {error.found}: {error.reason}")
+                table.refuse(key, f"found {error.found}: {error.reason}")
     return formulas
 
 
-def _refuse_contradictions(new: Requirement, section: TomlSection) -> None:
+def _refuse_contradictions(new: Requirement, table: TableOfFile) -> None:
     counted = new.quantity in COUNTED_BEYOND
     if counted and new.threshold is None:
-        section.refuse("threshold", "found nothing, expected the residual (m) that counts as one")
+        table.refuse("threshold", "found nothing, expected the residual (m) that counts as one")
     if not counted and new.threshold is not None:
         known = " and ".join(COUNTED_BEYOND)
-        section.refuse("threshold", f"found one for {new.quantity}, expected it for {known} only")
+        table.refuse("threshold", f"found one for {new.quantity}, expected it for {known} only")
     limit, largest = new.limit.constant, new.measured.largest
     if limit is not None and largest is not None and limit > largest:
-        section.refuse("limit", f"found {limit:g}, expected at most {largest:g} (a share)")
+        table.refuse("limit", f"found {limit:g}, expected at most {largest:g} (a share)")
     if new.basis_of_score and (limit == 0.0 or new.measured.sense == "at least"):
         what = "a quantity that is to be at most a limit above 0"
-        section.refuse("basis_of_score", f"found true for {new.quantity}, expected {what}")
+        table.refuse("basis_of_score", f"found true for {new.quantity}, expected {what}")
 
 
 def _withhold(state: _Merged, touched: set[str]) -> None:
@@ -212,25 +208,26 @@ def _withhold(state: _Merged, touched: set[str]) -> None:
 def _add_statements(state: _Merged, content: FileContent) -> None:
     given: set[tuple[str, str]] = set()
     for table in content.statements:
-        section = table.section
-        if "component" not in table.values or not _was_read(table):
+        if "component" not in table.values or not table.is_right:
             continue
         statement = Statement(**table.values)
         key = (statement.component, statement.language)
         if key in given:
-            section.refuse("component", f"found {' and '.join(key)} a second time")
+            table.refuse("component", f"found {' and '.join(key)} a second time")
         given.add(key)
         for id_ in statement.rests_on:
             if id_ not in state.named:
-                section.refuse("rests_on", f"found {id_!r}{nearest(id_, sorted(state.named))}")
+                table.refuse("rests_on", f"found {id_!r}{nearest(id_, sorted(state.named))}")
         if statement.tested_with_fewer and statement.least_points == 1:
-            section.refuse("least_points", "found 1, expected more: tested_with_fewer is given")
+            table.refuse("least_points", "found 1, expected more: tested_with_fewer is given")
         state.statements[key] = statement
 
 
 def _refuse_emptiness(state: _Merged, content: FileContent) -> None:
     """A finding if a file that has the parts of a profile leaves no requirement."""
-    parts: list[str] = [key for key in ("name", "needs", "scales", "omit") if key in content.head]
+    parts: list[str] = [
+        key for key in ("name", "needs", "scales", "omit") if key in content.top.values
+    ]
     parts += ["statement"] if content.statements else []
     if parts and not state.requirements:
         content.top.refuse(parts[-1], "found no requirement, expected [[requirement]] or extends")

@@ -7,6 +7,7 @@ NSSDA, FGDC-STD-007.3-1998; GB/T 24356-2023.
 import math
 from dataclasses import dataclass
 
+from posstats.contract.acceptance import Grade
 from posstats.statistics.samples import SampleError
 
 NSSDA_EQUAL_FACTOR = 1.7308
@@ -21,8 +22,8 @@ RATIO_BELOW_RANGE = "ratio_below_range"
 
 GBT_FULL_SHARE = 0.3
 """Share of the limit up to which the score is 100."""
-GBT_GRADES = ((90.0, "excellent"), (75.0, "good"), (60.0, "pass"))
-GBT_FAIL = "fail"
+GBT_GRADES: tuple[tuple[float, Grade], ...] = ((90.0, "excellent"), (75.0, "good"), (60.0, "pass"))
+GBT_FAIL: Grade = "fail"
 GBT_SAMPLE_SIZES = (
     (20, 3),
     (40, 5),
@@ -101,7 +102,7 @@ def gbt_score(found: float, limit: float) -> float | None:
     return 60.0 + 40.0 * (1.0 - share) / (1.0 - GBT_FULL_SHARE)
 
 
-def gbt_grade(score: float | None) -> str:
+def gbt_grade(score: float | None) -> Grade:
     """GB/T 24356 grade of a score: "excellent", "good", "pass"; "fail" below 60 or for None."""
     if score is None:
         return GBT_FAIL

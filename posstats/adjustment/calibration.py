@@ -6,13 +6,13 @@ flights has besides (shifts and drifts of their own) stays.
 """
 
 import json
-import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Literal
 
 import numpy as np
+from msgspec import Meta
 
 from posstats.adjustment import Adjustment
 from posstats.adjustment.significance import parameter_covariance
@@ -20,24 +20,17 @@ from posstats.arrays import Floats
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
 from posstats.errors import BlockFormatError, PosstatsError
+from posstats.formats.hints import shown
 from posstats.formats.text_table import sha256
-from posstats.formats.toml_table import (
-    Rule,
-    Table,
-    number,
-    one_of,
-    read_table,
-    several,
-    text,
-    whole,
-)
+from posstats.formats.toml_document import Conflict, open_toml
+from posstats.formats.toml_types import Check
 from posstats.numerics.bundle.parameters import BLOCK, BORESIGHT, LEVER_ARM
 from posstats.numerics.bundle.pos_observations import antenna_positions, imu_angles
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.kernels.rotation import rotation_from_angles, vector_from_rotation
 from posstats.version import __version__
 
-SCHEMA = "posstats-calibration/1"
+SCHEMA: Literal["posstats-calibration/1"] = "posstats-calibration/1"
 _HEAD = "# Boresight and lever arm of a POS, measured minus true: see docs/wucaps.md"
 _PITCH_ROLL_YAW = np.array([1, 0, 2])  # as omega, phi, kappa of Rx(omega) Ry(phi) Rz(kappa)
 
@@ -197,14 +190,10 @@ def read_calibration(path: Path) -> Calibration:
         With every finding.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = path.read_bytes()
     except OSError as error:
         raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
-    except UnicodeDecodeError as error:
-        raise BlockFormatError([f"{path.name}: is not a text file in UTF-8"]) from error
-    except tomllib.TOMLDecodeError as error:
-        raise BlockFormatError([f"{path.name}: is not valid TOML: {error}"]) from error
-    return read_table(_CalibrationFile, content, path.name).calibration
+    return open_toml(content, path.name).read_or_raise(_CalibrationFile).calibration
 
 
 def write_calibration(calibration: Calibration, path: Path) -> None:
@@ -229,48 +218,50 @@ def write_calibration(calibration: Calibration, path: Path) -> None:
     path.write_text("\n".join([_HEAD, *lines, ""]).replace("\x7f", "\\u007f"), encoding="utf-8")
 
 
-def _matrix(value: Any) -> Floats:
-    """A covariance matrix of three or six rows."""
-    rows = several(several(number()))(value)
+def _is_covariance(rows: tuple[tuple[float, ...], ...]) -> bool:
     if len(rows) not in (3, 6) or any(len(row) != len(rows) for row in rows):
-        raise ValueError
+        return False
     matrix = np.array(rows)
-    variances = np.diagonal(matrix)
-    if (variances <= 0.0).any() or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0.0):
-        raise ValueError
-    return matrix
+    is_symmetric = np.allclose(matrix, matrix.T, rtol=1e-9, atol=0.0)
+    return bool(is_symmetric and (np.diagonal(matrix) > 0.0).all())
 
 
-_Name = Annotated[str, Rule("a text", text)]
-_Three = Annotated[
-    tuple[float, float, float], Rule("a list of three numbers", several(number(), 3))
-]
-_MaybeThree = Annotated[
-    tuple[float, float, float] | None, Rule("a list of three numbers", several(number(), 3))
+def _no_covariance(rows: tuple[tuple[float, ...], ...]) -> Iterable[str]:
+    if not _is_covariance(rows):
+        yield f"found {shown(rows)}, expected a covariance matrix of 3 or 6 rows"
+
+
+_Name = Annotated[str, Meta(pattern=r"\S", description="a text")]
+_Three = Annotated[tuple[float, float, float], Meta(description="a list of three numbers")]
+_Covariance = Annotated[
+    tuple[tuple[float, ...], ...],
+    Meta(description="a covariance matrix of 3 or 6 rows"),
+    Check(_no_covariance),
 ]
 
 
 @dataclass(frozen=True)
-class _CalibrationFile(Table):
+class _CalibrationFile:
     """What the file holds."""
 
-    schema: Annotated[str, one_of(SCHEMA)]
+    schema: Literal["posstats-calibration/1"]
     posstats_version: _Name
     block: _Name
     camera: _Name
-    n_images: Annotated[int, Rule("a whole number above 0", whole(1))]
+    n_images: Annotated[int, Meta(ge=1, description="a whole number above 0")]
     boresight_rad: _Three
-    parameters: Annotated[tuple[str, ...], Rule("a list of names", several(text))]
-    covariance: Annotated[Any, Rule("a covariance matrix of 3 or 6 rows", _matrix)]
-    lever_arm_m: _MaybeThree = None
+    parameters: Annotated[tuple[_Name, ...], Meta(description="a list of names")]
+    covariance: _Covariance
+    lever_arm_m: _Three | None = None
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         names = self.calibration.names
         if self.parameters != names:
-            yield f"parameters: found {', '.join(self.parameters)}, expected {', '.join(names)}"
+            found = ", ".join(self.parameters)
+            yield ("parameters",), f"found {found}, expected {', '.join(names)}"
         if len(self.covariance) != len(names):
-            yield f"covariance: found {len(self.covariance)} rows, expected {len(names)}"
+            yield ("covariance",), f"found {len(self.covariance)} rows, expected {len(names)}"
 
     @property
     def calibration(self) -> Calibration:
@@ -278,7 +269,7 @@ class _CalibrationFile(Table):
         return Calibration(
             boresight_rad=np.array(self.boresight_rad),
             lever_arm_m=arm,
-            covariance=self.covariance,
+            covariance=np.array(self.covariance),
             block=self.block,
             camera=self.camera,
             n_images=self.n_images,

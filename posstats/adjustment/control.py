@@ -2,17 +2,14 @@
 
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from posstats.arrays import Bools, Floats, Ints
 from posstats.block.model import Block, GroundPoints
+from posstats.contract.choices import ControlChoice
 from posstats.errors import PosstatsError
-
-ControlChoice = Literal["roles", "none", "centre", "corners", "all"] | tuple[str, ...]
-NAMED_CHOICES = ("roles", "none", "centre", "corners", "all")
 
 
 def chosen_control(block: Block, choice: ControlChoice) -> Bools:

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
@@ -21,7 +20,7 @@ from posstats.adjustment.screening import (
     without_control,
     without_rays,
 )
-from posstats.adjustment.significance import GlobalTest, critical_value, local_tests
+from posstats.adjustment.significance import critical_value, local_tests
 from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.model import Block, Orientations
 from posstats.errors import GeometryError
@@ -35,7 +34,9 @@ from posstats.numerics.bundle.pos_observations import angles_by_rotation_vector
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 from posstats.numerics.bundle.system import BundleSystem, State
 from posstats.numerics.solvers.arrow import ArrowFactor, factorised
+from posstats.numerics.solvers.robust import SMALLEST_SCALE
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
+from posstats.statistics.global_test import GlobalTest, global_test
 
 Progress = Callable[[int, int], object]
 
@@ -43,7 +44,6 @@ ORIENTATION = "bundle"
 MAX_IMAGES = 3000  # the covariance of all their angles: 0.65 GB, and a few copies of it
 _IMAGES_AT_ONCE = 100
 _WEAK = 100.0  # times the standard deviation of a contradicted position, to look for blunders
-_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 _LEAST_REDUNDANCY = 1.0  # of all image coordinates together, to estimate their noise
 _ALPHA = 0.05  # that a block without blunders loses a ray, has a position or a control point named
 _PHASES = 4
@@ -134,7 +134,7 @@ def adjust_imu_free(
         stated = without_rays(stated, _blunders(stated, _phase(progress, 2)))
         first = adjust(stated, progress=_phase(progress, 2))
     scale = _image_scale(first)
-    believed = max(scale, _SMALLEST_SCALE) if np.isfinite(scale) else 1.0
+    believed = max(scale, SMALLEST_SCALE) if np.isfinite(scale) else 1.0
     problem = _from(first, replace(stated, sigma_px=believed * stated.sigma_px))
     adjusted = adjust(problem, progress=_phase(progress, 3))
     orientations = _orientations(block, adjusted)
@@ -228,7 +228,7 @@ def _worst_of_points(problem: BundleProblem, adjusted: AdjustedBundle) -> Bools:
     worst = np.zeros(len(problem.ground_m))
     np.maximum.at(worst, problem.point, w)
     n_tested = 2 * max(int(np.isfinite(problem.sigma_px).sum()), 1)
-    scale = max(_image_scale(adjusted), _SMALLEST_SCALE)
+    scale = max(_image_scale(adjusted), SMALLEST_SCALE)
     beyond: Bools = w > critical_value(_ALPHA / n_tested) * scale
     beyond &= w == worst[problem.point]
     return beyond
@@ -245,10 +245,7 @@ def _overall(adjusted: AdjustedBundle) -> GlobalTest:
     measured = [adjusted.groups[name] for name in ("image", "gnss", "control")]
     square_sum = sum(group.square_sum for group in measured)
     dof = round(sum(group.redundancy for group in measured))
-    if dof <= 0:
-        return GlobalTest(float("nan"), dof, float("nan"))
-    tail = min(stats.chi2.cdf(square_sum, dof), stats.chi2.sf(square_sum, dof))
-    return GlobalTest(float(np.sqrt(square_sum / dof)), dof, 2.0 * float(tail))
+    return global_test(square_sum, dof)
 
 
 def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle, kind: str) -> Ints:

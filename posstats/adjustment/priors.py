@@ -13,7 +13,7 @@ import numpy as np
 from posstats.adjustment.significance import local_tests, parameter_tests
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
-from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 CONTRADICTED = 4.0
 """Standard deviations beyond which measurements contradict a prior."""
@@ -55,10 +55,8 @@ def _without_wrong_control(
 
 
 def _without_control_point(problem: BundleProblem, row: int) -> BundleProblem:
-    control = problem.control
-    rows = np.delete(np.arange(len(control.point)), row)
-    left = Control(control.point[rows], control.position_m[rows], control.covariance_m2[rows])
-    return replace(problem, control=left)
+    rows = np.delete(np.arange(len(problem.control.point)), row)
+    return replace(problem, control=problem.control.subset(rows))
 
 
 def _contradicted(problem: BundleProblem, adjusted: AdjustedBundle) -> dict[CommonParameter, float]:

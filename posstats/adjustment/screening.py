@@ -8,7 +8,7 @@ import numpy as np
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.arrays import Bools, Floats
 from posstats.numerics.bundle import adjust
-from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
 _FAR = 5.0  # standard deviations: nearer ones are left to data snooping, which counts them all
 _WEAK_POS = 100.0  # times the stated standard deviations
@@ -94,6 +94,4 @@ def without_rays(problem: BundleProblem, rays: Bools) -> BundleProblem:
 
 def without_control(problem: BundleProblem) -> BundleProblem:
     """The problem without control points."""
-    control = problem.control
-    none = Control(control.point[:0], control.position_m[:0], control.covariance_m2[:0])
-    return replace(problem, control=none)
+    return replace(problem, control=problem.control.subset(slice(0)))

@@ -1,7 +1,7 @@
-"""Tests of a bundle adjustment: of the whole, of additional parameters, of single observations.
+"""Tests of a bundle adjustment: of additional parameters, of single observations.
 
-The global and the local tests take the stated weights as the null hypothesis (sigma0 = 1), as
-Baarda's do: blunders and wrong weights are what they look for. The t tests of the additional
+The local tests take the stated weights as the null hypothesis (sigma0 = 1), as Baarda's and the
+global test do: blunders and wrong weights are what they look for. The t tests of the additional
 parameters scale with the estimated sigma0, so that weights which are all wrong by one factor do
 not make parameters significant.
 """
@@ -29,25 +29,6 @@ LEAST_CONTROL_REDUNDANCY = 1e-6
 and POS say of the point, but gross errors show all the same."""
 MOST_EFFECT = 10.0
 """Standard deviations of an observation by which an undetermined free parameter can move it."""
-
-
-@dataclass(frozen=True)
-class GlobalTest:
-    """Whether the stated weights are right.
-
-    Attributes
-    ----------
-    sigma0
-        Standard deviation of unit weight.
-    dof
-        Degrees of freedom.
-    p
-        Two-sided, of the chi-square distribution of v'Pv; NaN without redundancy.
-    """
-
-    sigma0: float
-    dof: int
-    p: float
 
 
 @dataclass(frozen=True)
@@ -126,15 +107,6 @@ class LocalTest:
     detectable: Floats
     n_unchecked: int
     unit: str
-
-
-def global_test(result: AdjustedBundle) -> GlobalTest:
-    """Chi-square test of v'Pv against the degrees of freedom."""
-    if result.dof <= 0:
-        return GlobalTest(result.sigma0, result.dof, float("nan"))
-    square_sum, dof = result.square_sum, result.dof
-    tail = min(stats.chi2.cdf(square_sum, dof), stats.chi2.sf(square_sum, dof))
-    return GlobalTest(result.sigma0, dof, 2.0 * float(tail))
 
 
 def scale(result: AdjustedBundle) -> float:

@@ -9,18 +9,17 @@ are exchanged or reversed bend the whole block, so they are looked for first (`a
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.significance import critical_value, local_tests
 from posstats.arrays import Floats, Ints
+from posstats.contract.adjustment import Observed
 from posstats.errors import ConvergenceError, UndeterminedError
 from posstats.numerics.bundle import adjust
-from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, Control
+from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
 
-Kind = Literal["image", "axes", "gnss", "imu", "control"]
 BLOCK_ALPHA = 0.05
 MOST_BLUNDERS = 1000
 _GROSS = 10.0  # critical values: residuals that a robust start leaves out, the rest is tested
@@ -46,7 +45,7 @@ class Blunder:
         ``px``, ``m`` or ``rad``.
     """
 
-    kind: Kind
+    kind: Observed
     index: int
     w: float
     size: Floats
@@ -85,7 +84,7 @@ class Snooping:
 class _Suspect:
     """What may be taken out, in the numbering of the whole problem."""
 
-    kind: Kind
+    kind: Observed
     index: int
     w: float
 
@@ -183,13 +182,11 @@ def _without(problem: BundleProblem, out: list[_Suspect]) -> BundleProblem:
     antenna, angles = problem.pos.sigma_antenna_m.copy(), problem.pos.sigma_angles_rad.copy()
     antenna[index["gnss"]] = np.inf
     angles[index["imu"]] = np.inf
-    control = problem.control
-    rows = _control_kept(problem, index["control"])
     return replace(
         problem,
         sigma_px=sigma_px,
         pos=replace(problem.pos, sigma_antenna_m=antenna, sigma_angles_rad=angles),
-        control=Control(control.point[rows], control.position_m[rows], control.covariance_m2[rows]),
+        control=problem.control.subset(_control_kept(problem, index["control"])),
     )
 
 
@@ -207,7 +204,7 @@ def _suspects(
     """Observations above the critical value, the worst first."""
     row_of = {int(point): row for row, point in enumerate(problem.control.point)}
     found: list[_Suspect] = []
-    kinds: tuple[Kind, ...] = ("image", "gnss", "imu", "control")
+    kinds: tuple[Observed, ...] = ("image", "gnss", "imu", "control")
     tests = local_tests(kept, result)
     for kind in kinds:
         w = tests[kind].w

@@ -12,12 +12,13 @@ from functools import cached_property
 
 import numpy as np
 
+from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
-from posstats.adjustment.control import ControlChoice, chosen_control
+from posstats.adjustment.control import chosen_control
 from posstats.adjustment.diagnosis import GROSS, likely_mistake
-from posstats.adjustment.observability import Undetermined, singular_message, undetermined
+from posstats.adjustment.parameter_choice import Dropped, select_parameters
 from posstats.adjustment.priors import with_fitting_priors
 from posstats.adjustment.screening import (
     contradicting_rays,
@@ -25,23 +26,22 @@ from posstats.adjustment.screening import (
     without_control,
     without_rays,
 )
-from posstats.adjustment.selection import Dropped, select_parameters
-from posstats.adjustment.settings import AdjustmentSettings, additional_parameters
 from posstats.adjustment.significance import (
     Correlations,
-    GlobalTest,
     LocalTest,
     ParameterTest,
     correlations,
-    global_test,
     local_tests,
     parameter_tests,
     scale,
 )
 from posstats.adjustment.snooping import Snooping, snoop
+from posstats.adjustment.undetermined import singular_block, undetermined
 from posstats.adjustment.weights import EstimatedWeights, estimate_weights
 from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.contract.adjustment import Undetermined
+from posstats.contract.choices import ControlChoice
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
@@ -51,6 +51,8 @@ from posstats.geometry.ground.check_points import (
 )
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.settings import AdjustmentSettings
+from posstats.statistics.global_test import GlobalTest, global_test
 
 Progress = Callable[[str, float], object]
 
@@ -130,7 +132,7 @@ class Adjustment:
         if surveyed is None:
             return None
         used = {self.block.tie_points.point_id[k] for k in self.problem.control.point}
-        return _some(surveyed, np.array([point in used for point in surveyed.point], dtype=bool))
+        return surveyed.subset(np.array([point in used for point in surveyed.point], dtype=bool))
 
 
 def adjust_block(
@@ -186,7 +188,7 @@ def adjust_block(
             weights = _combined(weights, estimate_weights(problem))
             problem, adjusted = weights.problem, weights.result
     except UndeterminedError as error:
-        raise PosstatsError(singular_message(error, stated, ids)) from error
+        raise singular_block(error, stated, ids) from error
     except (ConvergenceError, GeometryError) as error:
         mistake = likely_mistake(tied, parameters, control, np.inf)
         if mistake is None:
@@ -213,16 +215,6 @@ def _with_roles(block: Block, choice: ControlChoice) -> tuple[Block, Bools]:
 def _takes_part(block: Block) -> Bools:
     """(m,) rays that are not to check points."""
     return ~block.check_points[block.tie_points.point]
-
-
-def _some(surveyed: GroundPoints, keep: Bools) -> GroundPoints:
-    return GroundPoints(
-        surveyed.point[keep],
-        surveyed.position_m[keep],
-        surveyed.is_check[keep],
-        surveyed.sigma_xy_m[keep],
-        surveyed.sigma_z_m[keep],
-    )
 
 
 def _of_wrong_axes(stated: BundleProblem) -> Bools:
@@ -292,7 +284,7 @@ def _result(
         rejected=rejected,
         problem=problem,
         adjusted=adjusted,
-        overall=global_test(adjusted),
+        overall=global_test(adjusted.square_sum, adjusted.dof),
         parameters=tests,
         common_correlations=_correlations(adjusted),
         single=local_tests(problem, adjusted),

@@ -9,7 +9,6 @@ Errors live in the ground frame (omega, phi, kappa of the block's system) or in 
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
@@ -23,8 +22,10 @@ from posstats.analysis.observability import (
 from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import AngleErrorSource, Frame
+from posstats.contract.notice import Notice, listing
 from posstats.errors import GeometryError
-from posstats.geometry.coplanarity.adjustment import Priors, adjust
+from posstats.geometry.coplanarity.adjustment import Priors, adjust_coplanarity
 from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE, long_bases, point_pairs
 from posstats.numerics.kernels.rotation import (
     rotation_derivatives,
@@ -34,8 +35,6 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
-
-ErrorSource = Literal["coplanarity", "bundle", "adjusted"]
 
 _SHOWN = 10
 _SMALL_ANGLE_RAD = 1e-3
@@ -66,12 +65,12 @@ class AngleErrors:
     sigma0
         Standard deviation of an image coordinate from the residuals, px; None for ``adjusted``,
         NaN without redundancy.
-    warnings
-        Sentences for the report.
+    notices
+        What a reader has to know of them.
     """
 
-    frame: Literal["ground", "camera"]
-    source: ErrorSource
+    frame: Frame
+    source: AngleErrorSource
     image: Ids
     strip: Ids
     time_s: Floats
@@ -80,7 +79,7 @@ class AngleErrors:
     used: Bools
     observability: tuple[Observability, ...] = ()
     sigma0: float | None = None
-    warnings: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
 
     def __len__(self) -> int:
         return len(self.image)
@@ -118,7 +117,7 @@ def adjusted_errors(block: Block) -> AngleErrors:
         error_rad=error,
         covariance_rad2=None,
         used=used,
-        warnings=_listed("no adjusted orientation", pos.image[~used]),
+        notices=listing("no_adjusted_orientation", pos.image[~used], _SHOWN),
     )
 
 
@@ -166,7 +165,7 @@ def coplanarity_errors(
         system=pos.system,
         image_px=block.accuracy.image_px,
     )
-    adjusted = adjust(pairs, priors, robust=robust, progress=progress)
+    adjusted = adjust_coplanarity(pairs, priors, robust=robust, progress=progress)
     estimate = _Estimate(
         adjusted.angles_rad,
         adjusted.covariance_rad2,
@@ -174,7 +173,7 @@ def coplanarity_errors(
         adjusted.sigma_px,
     )
     errors = _errors(pos, "coplanarity", estimate)
-    return replace(errors, warnings=_short_bases(long) + errors.warnings)
+    return replace(errors, notices=_short_bases(long) + errors.notices)
 
 
 def bundle_errors(block: Block, bundle: ImuFreeBundle) -> AngleErrors:
@@ -184,27 +183,19 @@ def bundle_errors(block: Block, bundle: ImuFreeBundle) -> AngleErrors:
     )
     errors = _errors(block.orientations, "bundle", estimate)
     wrong = (
-        *_listed(
-            "POS positions that the rest of the block contradicts", bundle.contradicted_positions
-        ),
-        *_listed(
-            "control points that the rest of the block contradicts",
-            bundle.contradicted_control,
-            "control points",
-        ),
+        *listing("contradicted_positions", bundle.contradicted_positions, _SHOWN),
+        *listing("contradicted_control", bundle.contradicted_control, _SHOWN),
     )
-    return replace(errors, warnings=errors.warnings + wrong)
+    return replace(errors, notices=errors.notices + wrong)
 
 
-def _short_bases(long: Bools) -> tuple[str, ...]:
-    """One sentence that counts the pairs of images left out, or none."""
+def _short_bases(long: Bools) -> tuple[Notice, ...]:
+    """One notice that counts the pairs of images left out, or none."""
     n_short = int(np.count_nonzero(~long))
     if n_short == 0:
         return ()
-    return (
-        f"{n_short} of {len(long)} pairs of images left out of the angle errors: their base is not"
-        f" longer than {SHORTEST_BASE:g} of its standard deviations, so its direction is unknown",
-    )
+    values = {"n": n_short, "n_pairs": len(long), "n_sigmas": SHORTEST_BASE}
+    return (Notice(code="pairs_with_short_base", values=values),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,7 +208,7 @@ class _Estimate:
     sigma_px: float
 
 
-def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> AngleErrors:
+def _errors(pos: Orientations, source: AngleErrorSource, estimate: _Estimate) -> AngleErrors:
     n = len(pos)
     tied = estimate.n_points > 0
     error = wrapped(pos.angles_rad - estimate.angles_rad)
@@ -251,36 +242,19 @@ def _errors(pos: Orientations, source: ErrorSource, estimate: _Estimate) -> Angl
         used=determined,
         observability=found,
         sigma0=estimate.sigma_px,
-        warnings=_undetermined(pos.image, estimate.n_points, determined),
+        notices=_undetermined(pos.image, estimate.n_points, determined),
     )
 
 
-def _undetermined(image: Ids, n_points: Ints, determined: Bools) -> tuple[str, ...]:
+def _undetermined(image: Ids, n_points: Ints, determined: Bools) -> tuple[Notice, ...]:
     """The images without a usable angle, by reason."""
     too_few = ~determined & (n_points > 0) & (n_points < MIN_MODEL_POINTS)
     loose = ~determined & (n_points >= MIN_MODEL_POINTS)
     return (
-        *_listed("no tie points in common with another image", image[n_points == 0]),
-        *_listed(
-            f"angles undetermined, fewer than {MIN_MODEL_POINTS} tie points in common with other"
-            " images",
-            image[too_few],
-        ),
-        *_listed(
-            f"angles undetermined, standard deviation above {UNDETERMINED_SHARE:g} of the prior"
-            " one in spite of common tie points",
-            image[loose],
-        ),
+        *listing("images_untied", image[n_points == 0], _SHOWN),
+        *listing("angles_of_few_points", image[too_few], _SHOWN, n_needed=MIN_MODEL_POINTS),
+        *listing("angles_loose", image[loose], _SHOWN, prior_fraction=UNDETERMINED_SHARE),
     )
-
-
-def _listed(finding: str, ids: Ids, kind: str = "images") -> tuple[str, ...]:
-    """One sentence that names the images or points, or none."""
-    if len(ids) == 0:
-        return ()
-    shown = ", ".join(str(each) for each in ids[:_SHOWN])
-    more = f" and {len(ids) - _SHOWN} more" if len(ids) > _SHOWN else ""
-    return (f"{finding} ({len(ids)} of the {kind}): {shown}{more}",)
 
 
 def in_camera_frame(errors: AngleErrors, orientations: Orientations) -> AngleErrors:

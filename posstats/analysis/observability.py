@@ -8,6 +8,7 @@ import numpy as np
 from posstats.arrays import Bools, Floats, Ids
 
 UNDETERMINED_SHARE = 0.1  # of the prior standard deviation
+ROTATIONS = ("about_base_axis", "about_axis_across", "about_vertical")
 
 
 @dataclass(frozen=True)
@@ -16,14 +17,14 @@ class Observability:
 
     Attributes
     ----------
-    unobservable
-        Common rotations that the measurements leave open, in words.
+    rotations
+        Common rotations that the measurements leave open, of `ROTATIONS`.
     images
         Ids of the images whose angles are not determined.
     """
 
     scope: str
-    unobservable: tuple[str, ...]
+    rotations: tuple[str, ...]
     images: tuple[str, ...]
 
 
@@ -70,7 +71,7 @@ def observability(angles: EstimatedAngles) -> tuple[Observability, ...]:
     return tuple(
         Observability(
             scope=scope,
-            unobservable=tuple(_open_rotations(angles, inside & angles.tied)),
+            rotations=tuple(_open_rotations(angles, inside & angles.tied)),
             images=tuple(angles.image[inside & ~angles.determined]),
         )
         for scope, inside in scopes
@@ -122,11 +123,7 @@ def _flight_axis(position_m: Floats, strip: Ids) -> Floats:
 
 
 def _axis_name(axis: Floats, along: Floats) -> str:
-    """Name a rotation by the nearest of base axis, across axis and vertical."""
+    """Name a rotation by the nearest of base axis, horizontal axis across it and vertical."""
     across = np.cross([0.0, 0.0, 1.0], along)
-    names = {
-        "rotation about the base axis": abs(axis @ along),
-        "rotation about the horizontal axis across the base": abs(axis @ across),
-        "rotation about the vertical": abs(axis[2]),
-    }
-    return max(names, key=lambda name: names[name])
+    nearness = [abs(axis @ along), abs(axis @ across), abs(axis[2])]
+    return ROTATIONS[int(np.argmax(nearness))]

@@ -20,8 +20,8 @@ from posstats.block.image_pairs import StereoModels
 from posstats.block.turned import corrected
 from posstats.geometry.stereo.parallax import model_rms_px
 
-LEAVE_STRIP_OUT = "leaving one strip out"
-LEAVE_HALF_OUT = "fitting one half of a strip, testing on the other"
+LEAVE_STRIP_OUT = "leave_strip_out"
+LEAVE_HALF_OUT = "leave_half_strip_out"
 
 
 def out_of_sample_parallax(

@@ -2,14 +2,23 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, TypeVar, get_args
 
 import numpy as np
 
 from posstats.arrays import Bools, Floats, Ids
 from posstats.block.model import BLOCK_SCOPE
+from posstats.contract.choices import FitKind
+from posstats.contract.notice import Notice
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
-from posstats.statistics.drift import ConstantFit, DriftFit, FitError, fit_constant, fit_drift
+from posstats.statistics.drift import (
+    ConstantFit,
+    DriftFit,
+    FitError,
+    ImpossibleFitError,
+    fit_constant,
+    fit_drift,
+)
 
 if TYPE_CHECKING:
     from posstats.analysis.angle_errors import AngleErrors
@@ -18,7 +27,6 @@ __all__ = [
     "BLOCK_SCOPE", "AngleRegression", "ConstantFit", "DriftFit", "FitError", "fit_drift", "regress",
 ]  # fmt: skip
 
-FitKind = Literal["ols", "gls"]
 _Fit = TypeVar("_Fit")
 
 
@@ -39,7 +47,7 @@ class AngleRegression:
     covariance_known
         False where the errors came without covariance: GLS then has white noise (and at block
         scope the strip effect) only.
-    reason
+    notice
         Why there is no line, or None.
     """
 
@@ -53,7 +61,7 @@ class AngleRegression:
     ols_constant: ConstantFit | None
     gls_constant: ConstantFit | None
     covariance_known: bool
-    reason: str | None = None
+    notice: Notice | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +94,7 @@ def regress(errors: "AngleErrors") -> tuple[AngleRegression, ...]:
     """Regress every angle on time, over the block and over every strip.
 
     Only images with `used` count. The block's GLS has a strip effect. A fit that cannot be made
-    is None, with the reason in words.
+    is None, with a notice that says why.
     """
     return tuple(_regressions(errors))
 
@@ -106,8 +114,8 @@ def _regression(
     errors: "AngleErrors", axis: int, chosen: Bools, angle: str, scope: str
 ) -> AngleRegression:
     sample = angle_sample(errors, axis, chosen, scope)
-    lines, line_reason = _fits_or_reason(sample.line)
-    constants, _ = _fits_or_reason(sample.constant)
+    lines, why_not = _fits_or_notice(sample.line)
+    constants, _ = _fits_or_notice(sample.constant)
     return AngleRegression(
         angle=angle,
         frame=errors.frame,
@@ -119,20 +127,22 @@ def _regression(
         ols_constant=constants.get("ols"),
         gls_constant=constants.get("gls"),
         covariance_known=errors.covariance_rad2 is not None,
-        reason=line_reason,
+        notice=why_not,
     )
 
 
-def _fits_or_reason(fit: Callable[[FitKind], _Fit]) -> tuple[dict[FitKind, _Fit], str | None]:
+def _fits_or_notice(
+    fit: Callable[[FitKind], _Fit],
+) -> tuple[dict[FitKind, _Fit], Notice | None]:
     """Both kinds of a fit; those that cannot be made are left out, and the last reason given."""
     made: dict[FitKind, _Fit] = {}
-    reason = None
+    why_not = None
     for kind in get_args(FitKind):
         try:
             made[kind] = fit(kind)
-        except FitError as problem:
-            reason = str(problem)
-    return made, reason
+        except ImpossibleFitError as problem:
+            why_not = Notice(code=problem.code, values=problem.values)
+    return made, why_not
 
 
 def angle_sample(errors: "AngleErrors", axis: int, chosen: Bools, scope: str) -> AngleSample:

@@ -16,6 +16,7 @@ from posstats.analysis.rows import (
 )
 from posstats.analysis.steps import Analysis
 from posstats.arrays import Floats
+from posstats.contract.files import as_values
 from posstats.contract.record import record
 from posstats.contract.results import (
     AnalysedBlock,
@@ -73,10 +74,10 @@ def results(analysis: Analysis, *, created: str | None = None) -> Results:
         ),
         check_point_residuals=tuple(row for each in residuals for row in residual_rows(each)),
         observability=tuple(
-            Observability(scope=each.scope, unobservable=each.unobservable, images=each.images)
+            Observability(scope=each.scope, rotations=each.rotations, images=each.images)
             for each in frames[0].errors.observability
         ),
-        warnings=(*block.warnings, *frames[0].errors.warnings),
+        notices=(*block.notices, *frames[0].errors.notices),
     )
 
 
@@ -88,7 +89,7 @@ def _settings(analysis: Analysis) -> AnalysisSettings:
         "errors": settings.errors,
         "frame": analysis.chosen.frame,
         "frame_setting": settings.frame,
-        "frame_reason": analysis.frame_reason,
+        "frame_notice": analysis.frame_notice and as_values(analysis.frame_notice),
         "robust": settings.robust,
         "position_m": analysis.block.accuracy.position_m,
         "angle_rad": analysis.block.accuracy.angle_rad,

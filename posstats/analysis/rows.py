@@ -8,6 +8,7 @@ from posstats.adjustment.imu_free import ImuFreeBundle
 from posstats.analysis.regression import AngleRegression
 from posstats.analysis.steps import Analysis, FrameAnalysis
 from posstats.arrays import Floats
+from posstats.contract.files import as_values
 from posstats.contract.record import record
 from posstats.contract.results import (
     AngleErrorSummary,
@@ -188,7 +189,7 @@ def regression_row(each: AngleRegression) -> Regression:
         "constant_se_rad": None if constant is None else constant.se,
         "constant_p_value": None if constant is None else constant.p_value,
         "covariance_known": each.covariance_known,
-        "reason": each.reason,
+        "notice": each.notice and as_values(each.notice),
     }
     return record(Regression, values | _ols(each.ols) | _gls(each.gls, origin_s))
 
@@ -253,6 +254,7 @@ def frame_rows(analysis: Analysis) -> Iterator[FrameComparison]:
 
 def selection_rows(chosen: FrameAnalysis) -> Iterator[Selection]:
     """The decisions of the chosen frame."""
-    keys = ("angle", "frame", "scope", "correct", "form", "rule", "fit", "reason")
+    keys = ("angle", "frame", "scope", "correct", "form", "rule", "fit")
     for each in chosen.decisions:
-        yield record(Selection, {key: getattr(each, key) for key in keys})
+        values = {key: getattr(each, key) for key in keys}
+        yield record(Selection, values | {"notices": as_values(each.notices)})

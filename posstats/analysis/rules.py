@@ -1,25 +1,27 @@
-"""Which angles to correct, in which form: rule sets are data, decisions carry their reason."""
+"""Which angles to correct, in which form: rule sets are data, decisions say why."""
 
-import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
+from msgspec import Meta
 
 from posstats.analysis.regression import (
     BLOCK_SCOPE,
     AngleRegression,
     ConstantFit,
     DriftFit,
-    FitKind,
 )
+from posstats.contract.choices import FitKind, Form, Scope
+from posstats.contract.notice import Notice, Value
 from posstats.errors import BlockFormatError, PosstatsError
-from posstats.formats.toml_section import nearest
-
-Form = Literal["none", "constant", "linear"]
+from posstats.formats.hints import nearest
+from posstats.formats.toml_document import open_toml
+from posstats.formats.toml_types import Check, repeated
+from posstats.statistics.holm import holm
 
 
 class RuleFormatError(BlockFormatError):
@@ -50,13 +52,17 @@ class RuleSet:
     """
 
     fit: FitKind
-    forms: tuple[Form, ...]
-    alpha: float
-    name: str = ""
+    forms: Annotated[
+        tuple[Literal["constant", "linear"], ...],
+        Meta(min_length=1, description='a list of "constant", "linear"'),
+        Check(repeated),
+    ]
+    alpha: Annotated[float, Meta(gt=0, lt=1, description="a number between 0 and 1")]
+    name: Annotated[str, Meta(min_length=1)] = ""
     description: str = ""
     holm: bool = False
-    min_r_squared: float = 0.0
-    min_parallax_gain: float = 0.0
+    min_r_squared: Annotated[float, Meta(ge=0, le=1, description="a number from 0 to 1")] = 0.0
+    min_parallax_gain: Annotated[float, Meta(ge=0, lt=1, description="a share from 0 to 1")] = 0.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,7 @@ class Decision:
     form: Form
     fit: FitKind
     rule: str
-    reason: str
+    notices: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -82,7 +88,7 @@ class OutOfSampleParallax:
     n_models
         Models that could be tested.
     method
-        How the images of the test were kept out of the fit, in words.
+        How the images of the test were kept out of the fit, as a code.
     """
 
     raw_px: float
@@ -126,7 +132,7 @@ def decide(
     regressions: Sequence[AngleRegression],
     rules: RuleSet,
     *,
-    scope: Literal["block", "strip"] = "block",
+    scope: Scope = "block",
     out_of_sample: OutOfSampleTest | None = None,
 ) -> tuple[Decision, ...]:
     """Decide for every angle of the block, or of every strip.
@@ -176,27 +182,14 @@ def chosen_fits(
 def _proposals(regressions: Sequence[AngleRegression], rules: RuleSet) -> list[Decision]:
     """Decisions by the tests alone, for the angles of one scope."""
     fits = [chosen_fits(regression, rules.fit) for regression in regressions]
-    line_p = _adjusted([None if line is None else line.f_pvalue for line, _ in fits], rules.holm)
-    mean_p = _adjusted([None if mean is None else mean.p_value for _, mean in fits], rules.holm)
+    line_p = [None if line is None else line.f_pvalue for line, _ in fits]
+    mean_p = [None if mean is None else mean.p_value for _, mean in fits]
+    if rules.holm:
+        line_p, mean_p = holm(line_p), holm(mean_p)
     return [
         _proposal(regression, rules, line, mean)
         for regression, line, mean in zip(regressions, line_p, mean_p, strict=True)
     ]
-
-
-def _adjusted(p_values: Sequence[float | None], holm: bool) -> list[float | None]:
-    """Holm's adjustment; None (no test) stays None and does not count.
-
-    statsmodels' `multipletests` gives the same, but collects garbage at every call (0.5 s).
-    """
-    adjusted = list(p_values)
-    if holm:
-        tested = sorted((p, k) for k, p in enumerate(p_values) if p is not None)
-        largest = 0.0
-        for rank, (p, k) in enumerate(tested):
-            largest = max(largest, min(1.0, (len(tested) - rank) * p))
-            adjusted[k] = largest
-    return adjusted
 
 
 def _proposal(
@@ -204,19 +197,17 @@ def _proposal(
 ) -> Decision:
     line, mean = chosen_fits(regression, rules.fit)
     form: Form = "none"
-    reasons = [] if regression.reason is None else [f"no line can be fitted: {regression.reason}"]
+    notices = [] if regression.notice is None else [_no_line(regression.notice)]
     if "linear" in rules.forms and line is not None and line_p is not None:
         significant = line_p < rules.alpha
         explains = line.rsquared >= rules.min_r_squared
         form = "linear" if significant and explains else form
-        reasons.append(_line_reason(line, line_p, rules))
+        notices.append(_on_line(line, line_p, rules))
     if form == "none" and "constant" in rules.forms and mean is not None and mean_p is not None:
         form = "constant" if mean_p < rules.alpha else form
-        reasons.append(_constant_reason(mean, mean_p, rules))
+        notices.append(_on_constant(mean, mean_p, rules))
     if rules.fit == "gls" and not regression.covariance_known:
-        reasons.append(
-            "the angle errors came without covariance, so standard errors rest on their scatter"
-        )
+        notices.append(Notice(code="no_covariance"))
     return Decision(
         angle=regression.angle,
         frame=regression.frame,
@@ -225,29 +216,41 @@ def _proposal(
         form=form,
         fit=rules.fit,
         rule=rules.name,
-        reason="; ".join(reasons),
+        notices=tuple(notices),
     )
 
 
-def _line_reason(line: DriftFit, p_value: float, rules: RuleSet) -> str:
-    verdict = "significant" if p_value < rules.alpha else "not significant"
-    text = (
-        f"drift {line.slope:.2e} ± {line.slope_se:.1e} rad/s {verdict} "
-        f"({_shown_p(p_value)}, level {rules.alpha:g})"
-    )
-    if rules.min_r_squared > 0.0:
-        side = "reaches" if line.rsquared >= rules.min_r_squared else "is below"
-        text += f", R2 = {line.rsquared:.3f} {side} {rules.min_r_squared:g}"
-    return text
+def _no_line(why: Notice) -> Notice:
+    return Notice(code="no_line", values={"why": why.code, **why.values})
 
 
-def _constant_reason(mean: ConstantFit, p_value: float, rules: RuleSet) -> str:
-    verdict = "significant" if p_value < rules.alpha else "not significant"
-    return f"constant {mean.value:.2e} ± {mean.se:.1e} rad {verdict} ({_shown_p(p_value)})"
+def _on_line(line: DriftFit, p_value: float, rules: RuleSet) -> Notice:
+    values: dict[str, Value] = {
+        "significance": _significance(p_value, rules),
+        "slope_rad_per_s": line.slope,
+        "slope_se_rad_per_s": line.slope_se,
+        "p": p_value,
+        "alpha": rules.alpha,
+    }
+    if rules.min_r_squared == 0.0:
+        return Notice(code="drift", values=values)
+    explains = line.rsquared >= rules.min_r_squared
+    values |= {"r_squared": line.rsquared, "min_r_squared": rules.min_r_squared}
+    return Notice(code="drift_explains" if explains else "drift_explains_little", values=values)
 
 
-def _shown_p(p_value: float) -> str:
-    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
+def _on_constant(mean: ConstantFit, p_value: float, rules: RuleSet) -> Notice:
+    values: dict[str, Value] = {
+        "significance": _significance(p_value, rules),
+        "constant_rad": mean.value,
+        "constant_se_rad": mean.se,
+        "p": p_value,
+    }
+    return Notice(code="constant", values=values)
+
+
+def _significance(p_value: float, rules: RuleSet) -> str:
+    return "significant" if p_value < rules.alpha else "not_significant"
 
 
 def _proven(
@@ -290,55 +293,22 @@ def _tried(
 
 def _with_gain(decision: Decision, gain: float, min_gain: float, method: str) -> Decision:
     if np.isnan(gain):
-        verdict = f"not testable out of sample ({method}): not corrected"
-        return replace(decision, correct=False, form="none", reason=f"{decision.reason}; {verdict}")
-    change = f"{abs(gain):.1%} {'less' if gain >= 0.0 else 'more'} mean parallax"
-    verdict = f"{change} out of sample ({method}), {min_gain:.0%} less needed"
+        untested = Notice(code="no_test_out_of_sample", values={"out_of_sample": method})
+        notices = (*decision.notices, untested)
+        return replace(decision, correct=False, form="none", notices=notices)
+    tested = Notice(
+        code="less_parallax_out_of_sample" if gain >= 0.0 else "more_parallax_out_of_sample",
+        values={
+            "change_share": abs(gain),
+            "out_of_sample": method,
+            "min_gain_share": min_gain,
+        },
+    )
     kept = gain >= min_gain
     form: Form = decision.form if kept else "none"
-    return replace(decision, correct=kept, form=form, reason=f"{decision.reason}; {verdict}")
+    return replace(decision, correct=kept, form=form, notices=(*decision.notices, tested))
 
 
 def _read_rules(content: bytes, source: str, name: str) -> RuleSet:
-    try:
-        values = tomllib.loads(content.decode("utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
-        raise RuleFormatError([f"{source}: not a TOML file: {problem}"]) from problem
-    findings = [f"{source}: {finding}" for finding in _findings(values)]
-    if findings:
-        raise RuleFormatError(findings)
-    return RuleSet(**{"name": name, **values, "forms": tuple(values["forms"])})
-
-
-def _findings(values: Mapping[str, Any]) -> list[str]:
-    """What is wrong with a rule file, one sentence per key."""
-    known = [field.name for field in fields(RuleSet)]
-    findings = [f"unknown key {key!r}{nearest(key, known)}" for key in values if key not in known]
-    checks: dict[str, tuple[Callable[[Any], bool], str]] = {
-        "name": (lambda v: isinstance(v, str) and v != "", "text"),
-        "description": (lambda v: isinstance(v, str), "text"),
-        "fit": (lambda v: v in get_args(FitKind), "ols or gls"),
-        "forms": (_is_forms, 'a list of "constant", "linear"'),
-        "alpha": (lambda v: _is_number(v) and 0.0 < v < 1.0, "a number between 0 and 1"),
-        "holm": (lambda v: isinstance(v, bool), "true or false"),
-        "min_r_squared": (lambda v: _is_number(v) and 0.0 <= v <= 1.0, "a number from 0 to 1"),
-        "min_parallax_gain": (lambda v: _is_number(v) and 0.0 <= v < 1.0, "a share from 0 to 1"),
-    }
-    for key, (accepts, expected) in checks.items():
-        if key in values and not accepts(values[key]):
-            findings.append(f"{key}: found {values[key]!r}, expected {expected}")
-        elif key not in values and key in ("fit", "forms", "alpha"):
-            findings.append(f"{key}: is missing, expected {expected}")
-    return findings
-
-
-def _is_forms(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and 0 < len(value) == len(set(map(str, value)))
-        and all(form in ("constant", "linear") for form in value)
-    )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    rules = open_toml(content, source).read_or_raise(RuleSet, RuleFormatError)
+    return replace(rules, name=rules.name or name)

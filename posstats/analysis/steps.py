@@ -2,15 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal, get_args
 
 import numpy as np
 
 from posstats.adjustment.imu_free import ImuFreeBundle, adjust_imu_free
 from posstats.analysis.angle_errors import (
     AngleErrors,
-    ErrorSource,
     adjusted_errors,
     bundle_errors,
     coplanarity_errors,
@@ -24,51 +21,19 @@ from posstats.arrays import Floats
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
+from posstats.contract.choices import Scope
+from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
+from posstats.settings import Settings
 
-Scope = Literal["block", "strip"]
-FrameChoice = Literal["ground", "camera", "auto"]
 Progress = Callable[[str, float], object]
 
 FIXED: tuple[Method, ...] = ("angles", "omega", "phi", "kappa")
 """Right-image angles that the fixed-element method holds at their POS values (Figure 1)."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What a user chooses; each value as on the command line.
-
-    Attributes
-    ----------
-    rules
-        ``paper``, ``strict`` or the path of a TOML file.
-    scope
-        Correct by one function of time for the block, or by one for every strip.
-    errors
-        Where angle errors come from: coplanarity of the tie points' rays, a bundle adjustment with
-        control points, or the block's adjusted orientation.
-    frame
-        Frame of the regression; ``auto`` takes the one with less parallax out of sample.
-    robust
-        Resist blunders in the tie points.
-    """
-
-    rules: str | Path = "paper"
-    scope: Scope = "block"
-    errors: ErrorSource = "coplanarity"
-    frame: FrameChoice = "ground"
-    robust: bool = True
-
-    def __post_init__(self) -> None:
-        for name, allowed in (("scope", Scope), ("errors", ErrorSource), ("frame", FrameChoice)):
-            value = getattr(self, name)
-            if value not in get_args(allowed):
-                choices = ", ".join(get_args(allowed))
-                raise PosstatsError(f"setting {name} is {value!r}: choose one of {choices}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +81,7 @@ class Analysis:
         The ground frame, and the camera frame if it was asked for.
     chosen
         The one of `frames` whose corrections were selected.
-    frame_reason
+    frame_notice
         Why that one, when it was chosen automatically.
     corrected_orientations, corrected_px
         By "omega", "phi", "kappa" (the line of each angle alone, ground frame) and "selected":
@@ -139,7 +104,7 @@ class Analysis:
     fixed: dict[str, RelativeOrientation]
     frames: tuple[FrameAnalysis, ...]
     chosen: FrameAnalysis
-    frame_reason: str | None
+    frame_notice: Notice | None
     corrected_orientations: dict[str, Orientations]
     corrected_px: dict[str, Floats]
     triangulated_px: dict[str, Floats]
@@ -165,6 +130,13 @@ def analyse(
     ------
     PosstatsError
         If there is no stereo model, the rules cannot be read, or the adjustment fails.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> analysis = posstats.analyse(posstats.read_block("block"))
+    >>> [(each.angle, each.form) for each in analysis.chosen.decisions]
+    [('omega', 'linear'), ('phi', 'none'), ('kappa', 'none')]
     """
     settings = settings or Settings()
     report = progress or _no_progress
@@ -182,7 +154,7 @@ def analyse(
     errors, bundle = _angle_errors(block, models, settings, report)
     report("regression", 0.8)
     frames = _frames(models, errors, rules, settings)
-    chosen, frame_reason = _chosen_frame(frames)
+    chosen, frame_notice = _chosen_frame(frames)
     report("correction", 0.9)
     orientations = _corrected_orientations(block.orientations, frames[0], chosen, settings.scope)
     report("check points", 0.95)
@@ -196,7 +168,7 @@ def analyse(
         fixed=fixed,
         frames=frames,
         chosen=chosen,
-        frame_reason=frame_reason,
+        frame_notice=frame_notice,
         corrected_orientations=orientations,
         corrected_px=_parallax(models, orientations),
         triangulated_px=_parallax(models, _triangulated(block, bundle)),
@@ -255,7 +227,7 @@ def _with_some_form(decision: Decision) -> Decision:
     return decision if decision.correct else replace(decision, correct=True, form="constant")
 
 
-def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, str | None]:
+def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, Notice | None]:
     """The camera frame if it was asked for, or leaves less parallax out of sample."""
     ground = frames[0]
     compared = [frame.out_of_sample for frame in frames if frame.out_of_sample is not None]
@@ -263,12 +235,10 @@ def _chosen_frame(frames: tuple[FrameAnalysis, ...]) -> tuple[FrameAnalysis, str
         return frames[-1], None
     left_px = [each.corrected_px for each in compared]
     if not np.isfinite(left_px).all():
-        return ground, "the frames cannot be compared out of sample: the ground frame is kept"
+        return ground, Notice(code="frames_not_compared")
     chosen = frames[int(np.argmin(left_px))]
-    return chosen, (
-        f"fitted in the {chosen.frame} frame, the angle errors leave less parallax on images that "
-        f"took no part in the fit ({compared[0].method})"
-    )
+    values = {"frame": chosen.frame, "out_of_sample": compared[0].method}
+    return chosen, Notice(code="frame_of_less_parallax", values=values)
 
 
 def _corrected_orientations(
@@ -287,7 +257,7 @@ def _line_of(
 ) -> tuple[Decision, ...]:
     """Take off the paper's line of one angle, wherever there is one."""
     return tuple(
-        Decision(angle, each.frame, each.scope, True, "linear", "ols", "alone", "")
+        Decision(angle, each.frame, each.scope, True, "linear", "ols", "alone")
         for each in regressions
         if each.angle == angle
         and (each.scope == BLOCK_SCOPE) == (scope == "block")

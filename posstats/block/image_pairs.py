@@ -131,6 +131,12 @@ def stereo_models(block: Block) -> StereoModels:
 
     Consecutive exposures without a common point form no model; models of fewer than
     `MIN_MODEL_POINTS` points are kept (results list them without a value).
+
+    Examples
+    --------
+    >>> import posstats
+    >>> len(posstats.stereo_models(posstats.read_block("block")))
+    28
     """
     rays = _tie_rays(block)
     left, right = _consecutive_images(block.orientations)

@@ -11,6 +11,7 @@ import pandas as pd
 from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.camera import Camera
 from posstats.block.frames import GroundFrame
+from posstats.contract.notice import Notice
 from posstats.numerics.kernels.rotation import AngleSystem, rotation_from_angles
 
 BLOCK_SCOPE = "block"
@@ -114,8 +115,18 @@ class GroundPoints:
     sigma_xy_m: Floats
     sigma_z_m: Floats
 
+    @classmethod
+    def none(cls) -> Self:
+        """No points at all."""
+        empty = np.empty(0)
+        return cls(empty.astype(object), np.empty((0, 3)), empty.astype(bool), empty, empty)
+
     def __len__(self) -> int:
         return len(self.point)
+
+    def subset(self, which: Bools | Ints) -> Self:
+        """The points where `which` (g,) is true, or of these numbers."""
+        return replace(self, **{name: values[which] for name, values in vars(self).items()})
 
 
 @dataclass(frozen=True)
@@ -151,7 +162,7 @@ class Block:
     """A photogrammetric block, complete and checked.
 
     `settings` is block.toml as read; `inputs` lists (file name, SHA-256) of what was read;
-    `warnings` are sentences for the report.
+    `notices` say what is odd about it.
     """
 
     name: str
@@ -167,7 +178,7 @@ class Block:
     source: OrientationTable | None = None
     folder: Path | None = None
     inputs: tuple[tuple[str, str], ...] = ()
-    warnings: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
 
     @property
     def check_points(self) -> Bools:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from posstats.contract.about import about
+from posstats.contract.status import PointStatus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,21 +39,19 @@ class CheckPointStatistics:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckPointResidual:
-    """A check point by one orientation: computed minus given, translation kept, crs axes.
-
-    A point that cannot be intersected has no differences.
-    """
-
+class _OfAnOrientation:
     orientation: Annotated[str, about("as above")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckPointDifference:
+    """A check point and its difference from an orientation, whichever that is."""
+
     point: Annotated[str, about("id of the point")]
     n_rays: Annotated[int, about("images that show it")]
     status: Annotated[
-        str,
-        about(
-            '`"ok"`, `"fewer than two rays"`, `"parallel rays"`, `"behind the camera"`,'
-            ' `"not converged"`'
-        ),
+        PointStatus,
+        about("whether it was intersected, or why not"),
     ]
     survey_sigma_xy_m: Annotated[
         float | None, about("standard deviation of the surveyed position; `null` if not stated")
@@ -67,3 +66,11 @@ class CheckPointResidual:
     z_m: Annotated[float, about("given")]
     dz_m: Annotated[float | None, about("difference")]
     sigma_z_m: Annotated[float | None, about("standard deviation of the difference")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckPointResidual(CheckPointDifference, _OfAnOrientation):
+    """A check point by one orientation: computed minus given, translation kept, crs axes.
+
+    A point that cannot be intersected has no differences.
+    """

@@ -1,13 +1,29 @@
 """The contract as JSON: one function writes every file, one reads it."""
 
+import codecs
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import msgspec
 
 from posstats.errors import PosstatsError
+
+_LONGEST = 60
+_MISSING = re.compile(r"Object missing required field `(.+)`")
+_MISMATCH = re.compile(r"Expected `(.+?)`( of length \d+)?")
+_STEP = re.compile(r"([^.\[\]]+)(?=[.\[]|$)|\[(?:(\d+)|\.\.\.)\]")
+_TYPES = {
+    "float": "a number",
+    "int": "a whole number",
+    "str": "text",
+    "bool": "true or false",
+    "null": "null",
+    "array": "a list",
+    "object": "an object",
+}
 
 
 class _Document(Protocol):
@@ -47,8 +63,9 @@ def from_json(text: str | bytes, kind: type[D], name: str) -> D:
     PosstatsError
         If it is no JSON, of another schema, or a key is missing or of another type; one sentence.
     """
+    content = text.encode() if isinstance(text, str) else text
     try:
-        values = msgspec.json.decode(text)
+        values = msgspec.json.decode(content.removeprefix(codecs.BOM_UTF8))
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise PosstatsError(f"{name} is no JSON: {error}") from error
     return from_values(values, kind, name)
@@ -59,16 +76,47 @@ def from_values(values: object, kind: type[D], name: str) -> D:
     expected = str(kind.__dataclass_fields__["schema"].default)  # type: ignore[attr-defined]
     found = values.get("schema") if isinstance(values, dict) else None
     if found != expected:
-        raise PosstatsError(f"{name} has schema {found!r}; this version reads {expected!r}")
+        raise PosstatsError(f"{name} has schema {_shown(found)}; this version reads {expected}")
     try:
         return msgspec.convert(values, kind)
     except msgspec.ValidationError as error:
-        raise PosstatsError(f"{name}: {error}") from error
+        raise PosstatsError(f"{name}, {_in_words(str(error), values)}") from error
 
 
 def read_json(path: Path, kind: type[D]) -> D:
     """Read a file of the contract from disk; errors as of `from_json`, and `OSError`."""
     return from_json(path.read_bytes(), kind, path.name)
+
+
+def _in_words(message: str, values: object) -> str:
+    """Key, what was found and what was expected, of a message of msgspec."""
+    what, _, place = message.partition(" - at `$")
+    path = place.rstrip("`").lstrip(".")
+    if missing := _MISSING.fullmatch(what):
+        return f"{path}{'.' if path else ''}{missing[1]}: found nothing, expected it"
+    found = _shown(_value_at(path, values))
+    if mismatch := _MISMATCH.match(what):
+        return f"{path}: found {found}, expected {_type_in_words(mismatch[1])}{mismatch[2] or ''}"
+    return f"{path}: found {found}, expected one of the words that are defined for it"
+
+
+def _type_in_words(types: str) -> str:
+    return " or ".join(_TYPES.get(each, each) for each in types.split(" | "))
+
+
+def _value_at(path: str, values: Any) -> object:
+    """The value at ``key[3].key``; of a mapping that is indexed by ``[...]``, the mapping."""
+    for key, index in _STEP.findall(path):
+        if not key and not index:
+            break
+        values = values[key] if key else values[int(index)]
+    return values
+
+
+def _shown(value: object) -> str:
+    """A value as JSON writes it: of a long one its beginning."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
 def _finite(value: Any) -> Any:

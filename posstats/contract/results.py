@@ -9,15 +9,15 @@ from typing import Annotated, Literal
 
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
+from posstats.contract.choices import AngleErrorSource, FitKind, Form, Frame, FrameChoice, Scope
 from posstats.contract.notice import Notice
+from posstats.contract.status import ModelStatus
 from posstats.contract.survey import BlockSummary, ImagePlace
 
 SCHEMA = "posstats-results/1"
 
 Method = Literal["pos", "independent", "dependent"]
 Fixed = Literal["none", "angles", "omega", "phi", "kappa"]
-Frame = Literal["ground", "camera"]
-Form = Literal["none", "constant", "linear"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,17 +25,13 @@ class AnalysisSettings:
     """What was asked for, and the stated accuracies."""
 
     rules: Annotated[str, about("`paper`, `strict`, or the rule set's file")]
-    scope: Annotated[
-        Literal["block", "strip"], about("one correction for the block, or for each strip")
-    ]
-    errors: Annotated[
-        Literal["coplanarity", "bundle", "adjusted"], about("where angle errors come from")
-    ]
+    scope: Annotated[Scope, about("one correction for the block, or for each strip")]
+    errors: Annotated[AngleErrorSource, about("where angle errors come from")]
     frame: Annotated[Frame, about("frame of the corrections")]
-    frame_setting: Annotated[Literal["ground", "camera", "auto"], about("frame as asked for")]
-    frame_reason: Annotated[str | None, about("why that frame, if it was chosen automatically")] = (
-        None
-    )
+    frame_setting: Annotated[FrameChoice, about("frame as asked for")]
+    frame_reason: Annotated[
+        str | None, about("why that frame, if chosen automatically, in English")
+    ] = None
     frame_notice: Annotated[Notice | None, about("the same as code and values")] = None
     robust: Annotated[bool, about("whether blunders of tie points were resisted")]
     position_m: Annotated[float, about("stated standard deviation of a position")]
@@ -120,7 +116,7 @@ class ModelParallax:
     bundle_px: Annotated[
         float | None, about("the orientation of `--errors bundle`, all points")
     ] = None
-    status: Annotated[str, about('`"ok"`, or why there is no relative orientation')]
+    status: Annotated[ModelStatus, about('`"ok"`, or why there is no relative orientation')]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -244,7 +240,7 @@ class Regression:
     covariance_known: Annotated[
         bool, about("false if the errors came without covariance (`--errors adjusted`)")
     ]
-    reason: Annotated[str | None, about("why a fit is impossible, or `null`")] = None
+    reason: Annotated[str | None, about("why a fit is impossible, in English, or `null`")] = None
     notice: Annotated[Notice | None, about("the same as code and values")] = None
 
 
@@ -270,8 +266,8 @@ class Selection:
     correct: Annotated[bool, about("whether it is corrected")]
     form: Annotated[Form, about("of the function taken off")]
     rule: Annotated[str, about("name of the rule set")]
-    fit: Annotated[Literal["ols", "gls"], about("the fit that is taken off")]
-    reason: Annotated[str, about("why")] = ""
+    fit: Annotated[FitKind, about("the fit that is taken off")]
+    reason: Annotated[str, about("why, in English")] = ""
     notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()
 
 
@@ -294,7 +290,10 @@ class Observability:
 
     scope: Annotated[str, about('`"block"` or a strip\'s id')]
     unobservable: Annotated[tuple[str, ...], about("rotations left open, in words")] = ()
-    rotations: Annotated[tuple[str, ...], about("the same as codes")] = ()
+    rotations: Annotated[
+        tuple[str, ...],
+        about("the same as codes: `about_base_axis`, `about_axis_across`, `about_vertical`"),
+    ] = ()
     images: Annotated[tuple[str, ...], about("ids of images whose angles are not determined")]
 
 
@@ -334,5 +333,5 @@ class Results:
         tuple[CheckPointResidual, ...], about("one per orientation and check point")
     ]
     observability: Annotated[tuple[Observability, ...], about("one per scope")]
-    warnings: Annotated[tuple[str, ...], about("sentences")] = ()
-    notices: Annotated[tuple[Notice, ...], about("the warnings as codes and values")] = ()
+    warnings: Annotated[tuple[str, ...], about("what to beware of, in English")] = ()
+    notices: Annotated[tuple[Notice, ...], about("the same as codes and values")] = ()

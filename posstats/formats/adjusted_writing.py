@@ -11,9 +11,9 @@ from posstats.arrays import Floats, Ints
 from posstats.block.model import Block, Orientations
 from posstats.formats.block_writing import POSITION_DECIMALS, source_of
 from posstats.formats.convention import Convention
+from posstats.formats.orientation_files import POSITION_COLUMNS
 from posstats.numerics.kernels.rotation import wrapped
 
-POSITION_COLUMNS = ("x", "y", "z")
 _SIGMA_FORMAT = "{:.6g}"
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 

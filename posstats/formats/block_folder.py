@@ -13,9 +13,10 @@ import numpy as np
 from posstats.arrays import Floats
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
+from posstats.contract.notice import Notice
 from posstats.errors import BlockFormatError, GeometryError
-from posstats.formats.block_toml import BlockSettings, parse_settings
-from posstats.formats.block_warnings import block_warnings, settings_warnings, time_warnings
+from posstats.formats.block_notices import block_notices, settings_notices, time_notices
+from posstats.formats.block_toml import FILE, BlockSettings, parse_settings
 from posstats.formats.block_writing import write_block, write_orientations
 from posstats.formats.convention import Convention
 from posstats.formats.orientation_files import (
@@ -26,8 +27,7 @@ from posstats.formats.orientation_files import (
     source_table,
 )
 from posstats.formats.point_files import read_ground_points, read_tie_points, refuse_outside_crs
-from posstats.formats.text_table import Table, read_bytes, read_table, sha256
-from posstats.formats.toml_section import FILE
+from posstats.formats.text_table import FileTable, read_bytes, read_table, sha256
 
 __all__ = ["read_block", "write_block", "write_orientations"]
 
@@ -49,6 +49,13 @@ def read_block(path: str | PathLike[str]) -> Block:
     BlockFormatError
         With a finding for everything that is wrong: file, line, column, what was found and what
         was expected.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> block = posstats.read_block("block")
+    >>> len(block.orientations), block.orientations.strips
+    (32, ('1', '2', '3', '4'))
     """
     folder = Path(path)
     if not folder.is_dir():
@@ -83,7 +90,7 @@ def _settings(folder: Path, inputs: dict[str, str], findings: list[str]) -> Bloc
     return settings
 
 
-def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[str, Table]:
+def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[str, FileTable]:
     """The tables that are there; a missing required one is a finding."""
     tables = {}
     for stem in TABLES:
@@ -98,7 +105,7 @@ def _tables(folder: Path, inputs: dict[str, str], findings: list[str]) -> dict[s
 
 
 def _block(
-    folder: Path, settings: BlockSettings, tables: dict[str, Table], findings: list[str]
+    folder: Path, settings: BlockSettings, tables: dict[str, FileTable], findings: list[str]
 ) -> Block | None:
     rows = ties = None
     if "orientations" in tables:
@@ -139,7 +146,7 @@ def _block(
         source=source_table(rows, settings),
         folder=folder,
     )
-    return replace(block, warnings=_warnings(block, settings, rows))
+    return replace(block, notices=_notices(block, settings, rows))
 
 
 def _frame(
@@ -161,10 +168,10 @@ def _frame(
         return None
 
 
-def _warnings(block: Block, settings: BlockSettings, rows: PosRows) -> tuple[str, ...]:
+def _notices(block: Block, settings: BlockSettings, rows: PosRows) -> tuple[Notice, ...]:
     file_order = np.argsort(rows.row)
     return (
-        *settings_warnings(settings),
-        *time_warnings(rows.time_s[file_order], [str(i) for i in rows.image[file_order]]),
-        *block_warnings(block),
+        *settings_notices(settings),
+        *time_notices(rows.time_s[file_order], [str(i) for i in rows.image[file_order]]),
+        *block_notices(block),
     )

@@ -16,12 +16,12 @@ from posstats.block.model import Block, GroundPoints, Orientations, OrientationT
 from posstats.errors import BlockFormatError, GeometryError
 from posstats.formats.block_toml import (
     DISTORTION_COEFFICIENTS,
+    FILE,
     RADIANS_PER_UNIT,
     BlockSettings,
     settings_from,
 )
 from posstats.formats.convention import Convention
-from posstats.formats.toml_section import FILE
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, rotation_from_angles, wrapped
 
 # Decimals that lose nothing: 0.1 um on the ground, 1e-8 px, 1e-14 rad.

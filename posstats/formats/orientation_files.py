@@ -10,7 +10,7 @@ from posstats.arrays import Floats, Ids, Ints
 from posstats.block.model import BLOCK_SCOPE, Orientations, OrientationTable
 from posstats.formats.block_toml import BlockSettings
 from posstats.formats.convention import Convention
-from posstats.formats.text_table import Table
+from posstats.formats.text_table import FileTable
 from posstats.formats.times import read_times
 
 POSITION_COLUMNS = ("x", "y", "z")
@@ -23,7 +23,7 @@ _LARGEST_ANGLE = 1e6
 class PosRows:
     """The rows of orientations.csv, checked, sorted by time (ties by image id), in file units."""
 
-    table: Table
+    table: FileTable
     row: Ints
     image: Ids
     strip: Ids
@@ -35,7 +35,7 @@ class PosRows:
     file_sigma_angles: Floats
 
 
-def read_pos_rows(table: Table, settings: BlockSettings, findings: list[str]) -> PosRows | None:
+def read_pos_rows(table: FileTable, settings: BlockSettings, findings: list[str]) -> PosRows | None:
     """Check orientations.csv; None if columns are missing, whatever else is wrong as findings."""
     angle_columns = settings.angle_columns
     if not table.require(("image", "strip", *POSITION_COLUMNS, *angle_columns), findings):
@@ -87,7 +87,7 @@ def source_table(rows: PosRows, settings: BlockSettings) -> OrientationTable:
 
 
 def read_adjusted(
-    table: Table,
+    table: FileTable,
     pos: Orientations,
     settings: BlockSettings,
     convention: Convention,
@@ -121,7 +121,7 @@ def read_adjusted(
     )
 
 
-def unique_images(table: Table, findings: list[str]) -> Ids:
+def unique_images(table: FileTable, findings: list[str]) -> Ids:
     """Image ids (n,), a finding for each that stands twice."""
     image = np.array(table.ids("image", findings).to_pylist(), dtype=object)
     first: dict[str, int] = {}
@@ -135,7 +135,7 @@ def unique_images(table: Table, findings: list[str]) -> Ids:
     return image
 
 
-def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> Floats:
+def read_angles(table: FileTable, settings: BlockSettings, findings: list[str]) -> Floats:
     """Angles (n, 3) in the file's unit."""
     angles = _columns(table, settings.angle_columns, _LARGEST_ANGLE, findings)
     if settings.angle_unit == "rad":
@@ -147,16 +147,16 @@ def read_angles(table: Table, settings: BlockSettings, findings: list[str]) -> F
     return angles
 
 
-def read_positions(table: Table, findings: list[str]) -> Floats:
+def read_positions(table: FileTable, findings: list[str]) -> Floats:
     """Positions x, y, z (n, 3) as they stand."""
     return _columns(table, POSITION_COLUMNS, LARGEST_M, findings)
 
 
-def _columns(table: Table, names: Sequence[str], largest: float, findings: list[str]) -> Floats:
+def _columns(table: FileTable, names: Sequence[str], largest: float, findings: list[str]) -> Floats:
     return np.column_stack([table.numbers(name, findings, largest=largest) for name in names])
 
 
-def _strips(table: Table, findings: list[str]) -> Ids:
+def _strips(table: FileTable, findings: list[str]) -> Ids:
     """Strip ids (n,), a finding for each that results could not tell from the whole block."""
     strip = np.array(table.ids("strip", findings).to_pylist(), dtype=object)
     findings += [
@@ -167,7 +167,7 @@ def _strips(table: Table, findings: list[str]) -> Ids:
     return strip
 
 
-def _sigmas(table: Table, name: str, findings: list[str]) -> Floats:
+def _sigmas(table: FileTable, name: str, findings: list[str]) -> Floats:
     """Standard deviations (n,), NaN where they are not given."""
     if name not in table.columns:
         return np.full(len(table), np.nan)
@@ -179,7 +179,7 @@ def _sigmas(table: Table, name: str, findings: list[str]) -> Floats:
     return sigmas
 
 
-def _camera_numbers(table: Table, settings: BlockSettings, findings: list[str]) -> Ints:
+def _camera_numbers(table: FileTable, settings: BlockSettings, findings: list[str]) -> Ints:
     """Index (n,) into the cameras, -1 with a finding where there is no such camera."""
     if "camera" not in table.columns and len(settings.cameras) == 1:
         return np.zeros(len(table), dtype=np.intp)

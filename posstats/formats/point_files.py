@@ -14,14 +14,14 @@ from posstats.block.frames import GroundFrame
 from posstats.block.model import GroundPoints, TiePoints
 from posstats.errors import GeometryError
 from posstats.formats.orientation_files import LARGEST_M, read_positions
-from posstats.formats.text_table import Table
+from posstats.formats.text_table import FileTable
 
 FORMAT_MARGIN = 0.05
 ROLES = ("control", "check")
 
 
 def read_tie_points(
-    table: Table,
+    table: FileTable,
     images: Sequence[str],
     camera_of_image: Ints,
     cameras: Sequence[Camera],
@@ -78,7 +78,7 @@ def _column_row(xy: Floats, camera: Camera, unit: str) -> Floats:
 
 
 def read_ground_points(
-    table: Table, frame: GroundFrame, findings: list[str]
+    table: FileTable, frame: GroundFrame, findings: list[str]
 ) -> GroundPoints | None:
     """The ground points, sorted by id, in the computing frame; None with findings if wrong."""
     before = len(findings)
@@ -111,7 +111,7 @@ def read_ground_points(
 
 
 def refuse_outside_crs(
-    table: Table,
+    table: FileTable,
     position_crs: Floats,
     frame: GroundFrame,
     findings: list[str],
@@ -128,7 +128,7 @@ def refuse_outside_crs(
     ]
 
 
-def _survey_sigma(table: Table, name: str, findings: list[str]) -> Floats:
+def _survey_sigma(table: FileTable, name: str, findings: list[str]) -> Floats:
     if name not in table.columns:
         return np.full(len(table), np.nan)
     sigma = table.numbers(name, findings, optional=True, largest=LARGEST_M)
@@ -149,7 +149,7 @@ def _sorted_ids(ids: Any) -> tuple[Ids, Ints]:
     return np.asarray(sorted_ids, dtype=object), number[coded.indices.to_numpy()]
 
 
-def _image_numbers(table: Table, images: Sequence[str], findings: list[str]) -> Ints:
+def _image_numbers(table: FileTable, images: Sequence[str], findings: list[str]) -> Ints:
     """Index (m,) into `images`, -1 with a finding where there is no such image."""
     ids = table.ids("image", findings)
     found = pc.index_in(ids, value_set=pa.array(list(images), pa.string()))
@@ -164,7 +164,7 @@ def _image_numbers(table: Table, images: Sequence[str], findings: list[str]) -> 
 
 
 def _refuse_outside(
-    table: Table,
+    table: FileTable,
     xy: Floats,
     camera: Ints,
     cameras: Sequence[Camera],
@@ -186,7 +186,7 @@ def _refuse_outside(
 
 
 def _refuse_repeated(
-    table: Table,
+    table: FileTable,
     point_id: Ids,
     point: Ints,
     images: Sequence[str],

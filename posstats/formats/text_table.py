@@ -30,7 +30,7 @@ _OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class FileTable:
     """One table as it was read.
 
     Attributes
@@ -139,7 +139,7 @@ class Table:
         return next(_records(self.content or ""))[0]
 
 
-def read_table(folder: Path, stem: str, findings: list[str]) -> Table | None:
+def read_table(folder: Path, stem: str, findings: list[str]) -> FileTable | None:
     """Read `stem`.csv or `stem`.parquet of a folder.
 
     Returns None if there is neither, or if the file cannot be read as a table; the second with a
@@ -184,7 +184,7 @@ def sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _read_csv(file: str, content: bytes, findings: list[str]) -> Table | None:
+def _read_csv(file: str, content: bytes, findings: list[str]) -> FileTable | None:
     text = _decoded(file, content, findings)
     if text is None:
         return None
@@ -205,7 +205,7 @@ def _read_csv(file: str, content: bytes, findings: list[str]) -> Table | None:
     except pa.ArrowInvalid as error:
         findings += _ragged_rows(file, text, len(header)) or [f"{file}: found no table: {error}"]
         return None
-    return Table(file, sha256(content), _columns(table), text)
+    return FileTable(file, sha256(content), _columns(table), text)
 
 
 def _decoded(file: str, content: bytes, findings: list[str]) -> str | None:
@@ -266,7 +266,7 @@ def _ragged_rows(file: str, text: str, n_columns: int) -> list[str]:
         return [f"{file}: found no table: {error}"]
 
 
-def _read_parquet(file: str, content: bytes, findings: list[str]) -> Table | None:
+def _read_parquet(file: str, content: bytes, findings: list[str]) -> FileTable | None:
     try:
         table = pyarrow.parquet.read_table(pa.BufferReader(content))
     except (pa.ArrowInvalid, OSError) as error:
@@ -278,7 +278,7 @@ def _read_parquet(file: str, content: bytes, findings: list[str]) -> Table | Non
         findings.append(f"{file}: found no columns, expected a table")
     if twice or not table.column_names:
         return None
-    return Table(file, sha256(content), _columns(table), None)
+    return FileTable(file, sha256(content), _columns(table), None)
 
 
 def _columns(table: Any) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from posstats.arrays import Floats
-from posstats.formats.text_table import Table
+from posstats.formats.text_table import FileTable
 
 TIME_COLUMNS = ("time_s", "time_gps_s", "time_utc")
 WEEK_S = 604_800.0
@@ -13,7 +13,7 @@ LARGEST_S = 1e11
 """Seconds of no known origin: 3000 years; time stamps in milliseconds since 1970 lie beyond."""
 
 
-def read_times(table: Table, findings: list[str]) -> Floats:
+def read_times(table: FileTable, findings: list[str]) -> Floats:
     """Exposure times (n,), seconds, of the one time column; NaN with a finding where there is none.
 
     UTC is counted in seconds from midnight before the first exposure, which keeps fractions of
@@ -59,7 +59,7 @@ def continuous_gps_seconds(seconds_of_week: Floats) -> Floats:
     return seconds_of_week + np.where(seconds_of_week <= ascending[widest], WEEK_S, 0.0)
 
 
-def _utc_seconds(table: Table, findings: list[str]) -> Floats:
+def _utc_seconds(table: FileTable, findings: list[str]) -> Floats:
     moments = []
     for row, text in enumerate(table.text("time_utc")):
         moment = _moment(text)

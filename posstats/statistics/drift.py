@@ -33,6 +33,15 @@ class FitError(PosstatsError, ValueError):
     """A regression that cannot be made."""
 
 
+class ImpossibleFitError(FitError):
+    """A regression that these data do not carry, for a reason with a `code` and `values`."""
+
+    def __init__(self, message: str, code: str, **values: int) -> None:
+        self.code = code
+        self.values = values
+        super().__init__(message)
+
+
 @dataclass(frozen=True, eq=False)
 class DriftFit:
     """A straight line error = intercept + slope * t.
@@ -147,6 +156,16 @@ def fit_drift(
         (a PosstatsError and a ValueError) for fewer than three exposures, equal times, values
         that are not finite, arrays that do not fit, a covariance that is not symmetric and
         positive semidefinite.
+
+    Examples
+    --------
+    >>> import posstats
+    >>> fit = posstats.fit_drift([0.0, 10.0, 20.0, 30.0], [1.0e-5, 1.6e-5, 2.3e-5, 2.8e-5])
+    >>> print(f"{fit.slope:.2e} +- {fit.slope_se:.2e} rad/s, R2 {fit.rsquared:.4f}")
+    6.10e-07 +- 2.65e-08 rad/s, R2 0.9963
+    >>> low, high = fit.conf_int()
+    >>> print(f"95 % interval {low:.2e} to {high:.2e} rad/s, p {fit.f_pvalue:.4f}")
+    95 % interval 4.96e-07 to 7.24e-07 rad/s, p 0.0019
     """
     time, error = _paired(time_s, error_rad, MIN_LINE_POINTS)
     reference = int(np.argmin(np.abs(time - time[0] - np.mean(time - time[0]))))
@@ -154,7 +173,9 @@ def fit_drift(
     # costs digits. The powers of two below cost none either.
     since = time - time[reference]
     if not since.any():
-        raise FitError("all exposure times are equal: a drift has no meaning")
+        raise ImpossibleFitError(
+            "all exposure times are equal: a drift has no meaning", "equal_times"
+        )
     span = _power_of_two(float(np.abs(since).max()))
     design = np.column_stack([np.ones(len(time)), since / span])
     units = np.array([1.0, 1.0 / span])
@@ -203,7 +224,12 @@ def _paired(time_s: ArrayLike, error_rad: ArrayLike, n_min: int) -> tuple[Floats
         raise FitError("times and errors must be finite: leave images without a value out")
     if len(time) < n_min:
         images = "1 image is" if len(time) == 1 else f"{len(time)} images are"
-        raise FitError(f"{images} too few: this fit needs at least {n_min}")
+        raise ImpossibleFitError(
+            f"{images} too few: this fit needs at least {n_min}",
+            "too_few_images",
+            n=len(time),
+            n_needed=n_min,
+        )
     return time, error
 
 
@@ -229,7 +255,9 @@ def _fitted(
         try:
             fit = generalised_least_squares(y / scale, design, known / scale**2, strips)
         except np.linalg.LinAlgError as problem:
-            raise FitError("the covariance matrix of the angle errors is singular") from problem
+            raise ImpossibleFitError(
+                "the covariance matrix of the angle errors is singular", "singular_covariance"
+            ) from problem
     return fit.rescaled(scale, coefficient_units)
 
 
@@ -279,13 +307,17 @@ def _checked_covariance(covariance: ArrayLike, n: int) -> Floats:
     if known.shape != (n, n):
         raise FitError(f"the covariance of {n} errors must be {n} x {n}, not {known.shape}")
     if not np.isfinite(known).all():
-        raise FitError("the covariance must be finite: leave images without a value out")
+        raise ImpossibleFitError(
+            "the covariance must be finite: leave images without a value out", "infinite_covariance"
+        )
     size = np.abs(known).max()
     if np.abs(known - known.T).max() > ROUNDING * size:
-        raise FitError("the covariance is not symmetric")
+        raise ImpossibleFitError("the covariance is not symmetric", "asymmetric_covariance")
     symmetric: Floats = 0.5 * (known + known.T)
     if size > 0.0 and np.linalg.eigvalsh(symmetric / size)[0] < -ROUNDING:
-        raise FitError("the covariance is not positive semidefinite")
+        raise ImpossibleFitError(
+            "the covariance is not positive semidefinite", "indefinite_covariance"
+        )
     return symmetric
 
 

@@ -19,9 +19,8 @@ p^2 / 2: the size of the test at 5 % lies between 4.87 % and 5 %.
 Where all but one difference are equal, as rounding to the millimetre makes two of three, G is the
 largest there is and p = 0: the null hypothesis knows no equal values.
 
-The components of a point may be correlated; over k components the p-values are adjusted by
-S. Holm's method (Scandinavian Journal of Statistics 6 (1979), 65-70), which holds for any
-dependence.
+The components of a point may be correlated; over k components the p-values are adjusted by Holm's
+method, which holds for any dependence.
 """
 
 import math
@@ -33,6 +32,7 @@ from scipy import special
 
 from posstats.arrays import Floats
 from posstats.statistics import samples
+from posstats.statistics.holm import holm
 
 MIN_POINTS = 3
 
@@ -71,12 +71,8 @@ class LargestResidual:
 def largest_residuals(difference_m: ArrayLike) -> tuple[LargestResidual, ...]:
     """Grubbs' test of the largest residual of each component of differences (n, k)."""
     found = [_component(column) for column in samples.checked_differences(difference_m).T]
-    tested = [(each.p, k) for k, each in enumerate(found) if each.p is not None]
-    family = 0.0
-    for rank, (p, k) in enumerate(sorted(tested)):
-        family = max(family, min(1.0, (len(tested) - rank) * p))
-        found[k] = replace(found[k], p_holm=family)
-    return tuple(found)
+    family = holm([each.p for each in found])
+    return tuple(replace(each, p_holm=p) for each, p in zip(found, family, strict=True))
 
 
 def _component(column: Floats) -> LargestResidual:

@@ -4,7 +4,6 @@ Every table of the file is a frozen dataclass below; a field's annotation carrie
 value must obey, so that the class is the documentation, the reader and the check.
 """
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
@@ -12,59 +11,44 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from msgspec import Meta
+
 from posstats.block.camera import Camera, Distortion, DistortionModel
 from posstats.errors import BlockFormatError
-from posstats.formats.toml_table import (
-    Rule,
-    Table,
-    number,
-    one_of,
-    read_table,
-    several,
-    text,
-    whole,
-)
+from posstats.formats.toml_document import Conflict, TomlDocument, open_toml
+from posstats.formats.toml_types import ONE_OR_MORE
 from posstats.numerics.kernels.rotation import AngleSystem
 
 _MAX_IMAGES = 100_000
 
-_Text = Annotated[str, Rule("a text", text)]
-_MaybeText = Annotated[str | None, Rule("a text", text)]
-_Number = Annotated[float, Rule("a number", number())]
-_Positive = Annotated[float, Rule("a number above 0", number(lambda v: v > 0.0))]
-_MaybePositive = Annotated[float | None, Rule("a number above 0", number(lambda v: v > 0.0))]
-_NotNegative = Annotated[float, Rule("a number of at least 0", number(lambda v: v >= 0.0))]
-_Share = Annotated[float, Rule("a share from 0 to below 1", number(lambda v: 0.0 <= v < 1.0))]
-_Overlap = Annotated[float, Rule("a share above 0 and below 1", number(lambda v: 0.0 < v < 1.0))]
+_Text = Annotated[str, Meta(pattern=r"\S", description="a text")]
+_Number = Annotated[float, Meta(description="a number")]
+_Positive = Annotated[float, Meta(gt=0, description="a number above 0")]
+_NotNegative = Annotated[float, Meta(ge=0, description="a number of at least 0")]
+_Share = Annotated[float, Meta(ge=0, lt=1, description="a share from 0 to below 1")]
+_Overlap = Annotated[float, Meta(gt=0, lt=1, description="a share above 0 and below 1")]
 _SideOverlap = Annotated[
-    float,
-    Rule("a share above -1 and below 1 (negative: a gap)", number(lambda v: -1.0 < v < 1.0)),
+    float, Meta(gt=-1, lt=1, description="a share above -1 and below 1 (negative: a gap)")
 ]
-_SmallAngle = Annotated[
-    float, Rule("an angle in radians from 0 to 0.5", number(lambda v: 0.0 <= v <= 0.5))
+_SmallAngle = Annotated[float, Meta(ge=0, le=0.5, description="an angle in radians from 0 to 0.5")]
+_ErrorAngle = Annotated[float, Meta(ge=-0.5, le=0.5, description="an angle in radians within ±0.5")]
+_Count = Annotated[int, Meta(ge=0, description="a whole number of at least 0")]
+_PointCount = Annotated[int, Meta(ge=0, le=100_000, description="a whole number from 0 to 100000")]
+_StripCount = Annotated[int, Meta(ge=1, le=10_000, description="a whole number from 1 to 10000")]
+_StripCounts = Annotated[
+    tuple[_StripCount, ...],
+    Meta(min_length=1, description="a whole number from 1 to 10000, or a list of them"),
+    ONE_OR_MORE,
 ]
-_ErrorAngle = Annotated[
-    float, Rule("an angle in radians within ±0.5", number(lambda v: abs(v) <= 0.5))
+_Numbers = Annotated[
+    tuple[float, ...], Meta(min_length=1, description="a number or a list of them"), ONE_OR_MORE
 ]
-_Count = Annotated[int, Rule("a whole number of at least 0", whole(0))]
-_PointCount = Annotated[int, Rule("a whole number from 0 to 100000", whole(0, 100_000))]
-_MaybeCount = Annotated[int | None, Rule("a whole number from 1 to 10000", whole(1, 10_000))]
-_Counts = Annotated[
-    tuple[int, ...],
-    Rule("a whole number from 1 to 10000, or a list of them", several(whole(1, 10_000))),
-]
-_Numbers = Annotated[tuple[float, ...], Rule("a number or a list of them", several(number()))]
-_MaybePair = Annotated[
-    tuple[float, float] | None, Rule("a list of two numbers", several(number(), 2))
-]
-_Pair = Annotated[tuple[float, float], Rule("a list of two numbers", several(number(), 2))]
-_Triple = Annotated[
-    tuple[float, float, float], Rule("a list of three numbers", several(number(), 3))
-]
+_Pair = Annotated[tuple[float, float], Meta(description="a list of two numbers")]
+_Triple = Annotated[tuple[float, float, float], Meta(description="a list of three numbers")]
 
 
 @dataclass(frozen=True)
-class BlockSpec(Table):
+class BlockSpec:
     """``[block]``: name, seed, frame. Keys as in block.toml, and `origin_m`, the block's middle.
 
     `origin_m` is easting and northing in the crs (or in the Cartesian frame without a crs).
@@ -72,55 +56,55 @@ class BlockSpec(Table):
 
     name: _Text
     seed: _Count = 0
-    angles: Annotated[AngleSystem, one_of("omega-phi-kappa", "phi-omega-kappa")] = "omega-phi-kappa"
-    crs: _MaybeText = None
-    frame: Annotated[Literal["tangent", "grid"], one_of("tangent", "grid")] = "tangent"
+    angles: AngleSystem = "omega-phi-kappa"
+    crs: _Text | None = None
+    frame: Literal["tangent", "grid"] = "tangent"
     origin_m: _Pair = (0.0, 0.0)
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         if self.crs is not None and self.origin_m == (0.0, 0.0):
-            yield "crs needs origin_m, the easting and northing of the block's middle"
+            yield (), "crs needs origin_m, the easting and northing of the block's middle"
 
 
 @dataclass(frozen=True)
-class DistortionSpec(Table):
+class DistortionSpec:
     """``[camera.distortion]``, as in block.toml."""
 
-    model: Annotated[DistortionModel, one_of("none", "radial", "brown")] = "none"
+    model: DistortionModel = "none"
     k1: _Number = 0.0
     k2: _Number = 0.0
     k3: _Number = 0.0
     p1: _Number = 0.0
     p2: _Number = 0.0
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         if self.model == "none" and any((self.k1, self.k2, self.k3, self.p1, self.p2)):
-            yield 'has coefficients, but its model is "none"'
+            yield (), 'has coefficients, but its model is "none"'
         if self.model == "radial" and any((self.k3, self.p1, self.p2)):
-            yield 'has k3, p1 or p2, which the model "radial" does not use'
+            yield (), 'has k3, p1 or p2, which the model "radial" does not use'
 
 
 @dataclass(frozen=True)
-class CameraSpec(Table):
+class CameraSpec:
     """``[camera]``, as in block.toml; image y points forward, x to the right of the flight."""
 
     width_px: _Positive
     height_px: _Positive
     name: _Text = "camera"
-    pixel_size_mm: _MaybePositive = None
-    principal_distance_mm: _MaybePositive = None
-    principal_distance_px: _MaybePositive = None
-    principal_point_px: _MaybePair = None
+    pixel_size_mm: _Positive | None = None
+    principal_distance_mm: _Positive | None = None
+    principal_distance_px: _Positive | None = None
+    principal_point_px: _Pair | None = None
     distortion: DistortionSpec = DistortionSpec()
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         if (self.principal_distance_mm is None) == (self.principal_distance_px is None):
-            yield "needs either principal_distance_mm or principal_distance_px"
+            yield (), "needs either principal_distance_mm or principal_distance_px"
         elif self.principal_distance_mm is not None and self.pixel_size_mm is None:
-            yield "principal_distance_mm needs pixel_size_mm"
+            yield (), "principal_distance_mm needs pixel_size_mm"
 
     @property
     def camera(self) -> Camera:
@@ -130,7 +114,7 @@ class CameraSpec(Table):
         elif self.principal_distance_mm is not None and self.pixel_size_mm is not None:
             distance_px = self.principal_distance_mm / self.pixel_size_mm
         else:
-            raise BlockFormatError([f"camera: {next(iter(self.conflicts()))}"])
+            raise BlockFormatError([f"camera: {what}" for _, what in self.conflicts()])
         d = self.distortion
         return Camera(
             id=self.name,
@@ -145,7 +129,7 @@ class CameraSpec(Table):
 
 
 @dataclass(frozen=True)
-class Flight(Table):
+class Flight:
     """``[flight]``: how the block is flown.
 
     `images_per_strip` is one number for `n_strips` strips or a list; `headings_deg` (clockwise
@@ -156,10 +140,10 @@ class Flight(Table):
 
     forward_overlap: _Overlap
     side_overlap: _SideOverlap
-    images_per_strip: _Counts
-    n_strips: _MaybeCount = None
-    scale_denominator: _MaybePositive = None
-    height_m: _MaybePositive = None
+    images_per_strip: _StripCounts
+    n_strips: _StripCount | None = None
+    scale_denominator: _Positive | None = None
+    height_m: _Positive | None = None
     headings_deg: _Numbers = (0.0, 180.0)
     speed_m_per_s: _Positive = 100.0
     turn_s: _Positive = 300.0
@@ -167,17 +151,15 @@ class Flight(Table):
     tilt_rad: _SmallAngle = 0.01
     position_jitter_m: _NotNegative = 0.0
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         if (self.scale_denominator is None) == (self.height_m is None):
-            yield "needs either scale_denominator or height_m (above the mean terrain)"
+            yield (), "needs either scale_denominator or height_m (above the mean terrain)"
         if self.n_strips is not None and len(self.images_per_strip) not in (1, self.n_strips):
-            yield (
-                f"images_per_strip lists {len(self.images_per_strip)} strips, "
-                f"n_strips is {self.n_strips}"
-            )
+            n = len(self.images_per_strip)
+            yield ("images_per_strip",), f"found {n} strips, expected n_strips, {self.n_strips}"
         if sum(self.image_counts) > _MAX_IMAGES:
-            yield f"found {sum(self.image_counts)} images, expected at most {_MAX_IMAGES}"
+            yield (), f"found {sum(self.image_counts)} images, expected at most {_MAX_IMAGES}"
 
     @property
     def image_counts(self) -> tuple[int, ...]:
@@ -188,7 +170,7 @@ class Flight(Table):
 
 
 @dataclass(frozen=True)
-class Terrain(Table):
+class Terrain:
     """``[terrain]``: a smooth random surface; `relief_m` is the amplitude of a single wave.
 
     Its standard deviation is `relief_m` / sqrt(2), like that of a sine of this amplitude.
@@ -200,14 +182,14 @@ class Terrain(Table):
 
 
 @dataclass(frozen=True)
-class TiePointSpec(Table):
+class TiePointSpec:
     """``[tie_points]``: about how many a stereo model has, evenly spread on the ground."""
 
     per_model: _Positive = 100.0
 
 
 @dataclass(frozen=True)
-class AngleError(Table):
+class AngleError:
     """``[errors.omega]`` ...: error = constant + drift (t - t of the first exposure) + noise.
 
     `strip_rad` and `strip_drift_rad_per_s` are the standard deviations of a random constant and
@@ -222,7 +204,7 @@ class AngleError(Table):
 
 
 @dataclass(frozen=True)
-class PositionError(Table):
+class PositionError:
     """``[errors.position]``: standard deviations, alike in the three axes, and a lever arm.
 
     White noise, and a random shift and drift (from its first exposure) of each strip.
@@ -237,7 +219,7 @@ class PositionError(Table):
 
 
 @dataclass(frozen=True)
-class Errors(Table):
+class Errors:
     """``[errors]``: of the image measurements and of the POS.
 
     The errors of omega, phi, kappa are added to the angles of the block's system in the ground
@@ -258,7 +240,7 @@ class Errors(Table):
 
 
 @dataclass(frozen=True)
-class PointSpec(Table):
+class PointSpec:
     """``[check_points]`` and ``[control_points]``.
 
     Attributes
@@ -274,16 +256,13 @@ class PointSpec(Table):
     """
 
     n: _PointCount = 0
-    distribution: Annotated[
-        Literal["grid", "corners", "side-overlap", "random"],
-        one_of("grid", "corners", "side-overlap", "random"),
-    ] = "grid"
+    distribution: Literal["grid", "corners", "side-overlap", "random"] = "grid"
     image_px: _NotNegative = 0.0
     ground_m: _NotNegative = 0.0
 
 
 @dataclass(frozen=True)
-class AccuracySpec(Table):
+class AccuracySpec:
     """``[accuracy]``, as in block.toml: what the block states, whatever the errors are."""
 
     position_m: _Positive = 0.05
@@ -292,7 +271,7 @@ class AccuracySpec(Table):
 
 
 @dataclass(frozen=True)
-class Scenario(Table):
+class Scenario:
     """A block to be simulated: one attribute per table of the scenario file."""
 
     block: BlockSpec
@@ -305,15 +284,13 @@ class Scenario(Table):
     control_points: PointSpec = field(default_factory=lambda: PointSpec(distribution="corners"))
     accuracy: AccuracySpec = AccuracySpec()
 
-    def conflicts(self) -> Iterable[str]:
-        """Sentences on values that contradict each other."""
+    def conflicts(self) -> Iterable[Conflict]:
+        """Values that contradict each other."""
         if self.flight.scale_denominator is not None and self.camera.pixel_size_mm is None:
-            yield "flight.scale_denominator needs camera.pixel_size_mm (or give height_m)"
+            yield (), "flight.scale_denominator needs camera.pixel_size_mm (or give height_m)"
         if 2.0 * self.errors.blunder_px >= min(self.camera.width_px, self.camera.height_px):
-            yield (
-                f"errors.blunder_px: found {self.errors.blunder_px:g}, expected less than half "
-                "the image format"
-            )
+            found = f"found {self.errors.blunder_px:g}"
+            yield ("errors", "blunder_px"), f"{found}, expected less than half the image format"
 
     @property
     def height_m(self) -> float:
@@ -342,7 +319,7 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
         the wrong type or size, contradictions, a file that is not there or not TOML.
     """
     if isinstance(source, Mapping):
-        return read_table(Scenario, source, "scenario")
+        return TomlDocument("scenario", source).read_or_raise(Scenario)
     path = Path(source)
     if path.name == str(source) and not path.is_file() and _shipped(path.name).is_file():
         return shipped_scenario(path.name)
@@ -350,22 +327,13 @@ def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
         content = path.read_bytes()
     except OSError as error:
         raise BlockFormatError([f"{path.name}: cannot be read ({error.strerror})"]) from error
-    return read_table(Scenario, _toml(content, path.name), path.name)
+    return open_toml(content, path.name).read_or_raise(Scenario)
 
 
 def shipped_scenario(name: str) -> Scenario:
     """A scenario that comes with posstats, whatever lies in the working directory."""
-    return read_table(Scenario, _toml(_shipped(name).read_bytes(), name), name)
+    return open_toml(_shipped(name).read_bytes(), name).read_or_raise(Scenario)
 
 
 def _shipped(name: str) -> Traversable:
     return files("posstats.synthetic") / "scenarios" / f"{name}.toml"
-
-
-def _toml(content: bytes, name: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise BlockFormatError([f"{name}: is not a text file in UTF-8"]) from error
-    except tomllib.TOMLDecodeError as error:
-        raise BlockFormatError([f"{name}: is not valid TOML: {error}"]) from error

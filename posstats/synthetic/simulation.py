@@ -11,7 +11,7 @@ import numpy as np
 from posstats.arrays import Floats, Ints
 from posstats.block.frames import GroundFrame, require_map_grid
 from posstats.block.model import Accuracy, Block, GroundPoints, Orientations
-from posstats.formats.block_warnings import block_warnings
+from posstats.formats.block_notices import block_notices
 from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,
@@ -65,7 +65,7 @@ def simulate(scenario: Scenario, seed: int | None = None) -> Block:
         adjusted=truth,
         simulated=True,
     )
-    return replace(block, warnings=tuple(block_warnings(block)))
+    return replace(block, notices=block_notices(block))
 
 
 def _ground_frame(scenario: Scenario, plan: FlightPlan) -> GroundFrame:

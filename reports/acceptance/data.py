@@ -1,21 +1,25 @@
 """acceptance.json: the assessment with its words, and the files that the document embeds."""
 
 import hashlib
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
-from posstats.acceptance.assessment import Assessment, ChosenStatement, assess
+from posstats.acceptance.assessment import Assessment, assess
 from posstats.acceptance.evidence import best_orientation, evidence
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile, ProfileFile
 from posstats.acceptance.profile_files import profile_of_files
 from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values, document_id
+from posstats.contract.acceptance import (
+    Acceptance,
+    AttachedFile,
+    ChosenStatement,
+)
+from posstats.contract.choices import JudgedOrientation, Language
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
@@ -23,8 +27,6 @@ from ..archive.writing import Attachment
 from ..block.csv_files import write_tables
 from ..document import format as fmt
 from . import words as acceptance_words
-
-Values = dict[str, Any]
 
 RESULTS, ACCEPTANCE = "results.json", "acceptance.json"
 
@@ -44,8 +46,8 @@ class Demand:
     profile: Profile
     contract: Contract
     product: Product
-    orientation: str | None
-    language: str
+    orientation: JudgedOrientation | None
+    language: Language
 
 
 def embedded(
@@ -76,13 +78,11 @@ def embedded(
 
 def assembled(
     results: Results, demand: Demand, files: Sequence[Attachment], created: str
-) -> Values:
-    """The dictionary of acceptance.json.
+) -> Acceptance:
+    """The acceptance with its words.
 
     Parameters
     ----------
-    results
-        What the analysis found.
     files
         All that is embedded but itself.
     created
@@ -102,15 +102,17 @@ def assembled(
         created=created,
         results_sha256=by_name[RESULTS],
     )
-    listed = [
-        {"file": each.name, "sha256": by_name[each.name], "relationship": each.relationship}
+    listed = tuple(
+        AttachedFile(file=each.name, sha256=by_name[each.name], relationship=each.relationship)
         for each in files
-    ]
+    )
     return _assembled(results, demand, orientation, occasion, listed)
 
 
-def reassess(results: Results, profile_files: Mapping[str, bytes], stated: Values) -> Values:
-    """The dictionary again, from what a document embeds.
+def reassess(
+    results: Results, profile_files: Mapping[str, bytes], stated: Acceptance
+) -> Acceptance:
+    """The acceptance again, from what a document embeds.
 
     Parameters
     ----------
@@ -130,37 +132,39 @@ def reassess(results: Results, profile_files: Mapping[str, bytes], stated: Value
     profile, contract = profile_of_files(files)
     if profile is None:
         raise PosstatsError("the embedded profile holds no requirement")
-    demand = Demand(
-        profile, contract, Product(**stated["product"]), stated["orientation"], stated["language"]
-    )
+    product = Product(**asdict(stated.product))
+    demand = Demand(profile, contract, product, stated.orientation, stated.language)
     occasion = Occasion(
-        orientation_reason=Reason(stated["orientation_reason"]["code"]),
+        orientation_reason=Reason(stated.orientation_reason.code),
         contract=contract,
-        language=stated["language"],
-        created=stated["created"],
-        results_sha256=stated["results"]["sha256"],
+        language=stated.language,
+        created=stated.created,
+        results_sha256=stated.results.sha256,
     )
-    return _assembled(results, demand, demand.orientation or "", occasion, stated["attachments"])
+    return _assembled(results, demand, stated.orientation, occasion, stated.attachments)
 
 
 def _assembled(
     results: Results,
     demand: Demand,
-    orientation: str,
+    orientation: JudgedOrientation,
     occasion: Occasion,
-    listed: Sequence[Mapping[str, str]],
-) -> Values:
+    listed: tuple[AttachedFile, ...],
+) -> Acceptance:
     found = evidence(results, orientation, demand.product)
     assessment = assess(found, demand.profile, demand.product, demand.language)
     values = acceptance_values(assessment, results, occasion)
-    for row, reason in zip(values["requirements"], acceptance_words.reasons(values), strict=True):
-        row["reason"] = reason
-    values["statement"] = statement(assessment)
-    values["versions"]["weasyprint"] = version("weasyprint")
-    values["attachments"] = [dict(row) for row in listed]
-    # as it is read back, so that text of the same document is always the same
-    read_back: Values = json.loads(json.dumps(values))
-    return read_back | {"document_id": document_id(read_back)}
+    words = acceptance_words.words_of(values)
+    worded = replace(
+        values,
+        versions=values.versions | {"weasyprint": version("weasyprint")},
+        requirements=tuple(
+            replace(row, reason=acceptance_words.reason(words, row)) for row in values.requirements
+        ),
+        statement=statement(assessment),
+        attachments=listed,
+    )
+    return replace(worded, document_id=document_id(worded))
 
 
 def statement(assessment: Assessment) -> str:

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from importlib import resources
-from typing import Any
+from typing import TypeVar
 
-import msgspec
 from markupsafe import Markup
 
-from posstats.contract.files import as_values
+from posstats.contract.acceptance import Acceptance
+from posstats.contract.files import as_values, from_values
 from posstats.contract.results import Results
-from posstats.errors import PosstatsError
 
 from ..document.catalogue import catalogue
 from ..pages.garbage import garbage_kept
@@ -18,22 +17,19 @@ from . import templates as acceptance_templates
 from .document import build
 from .words import DOMAINS
 
-SCHEMA = "posstats-acceptance/1"
 BOX = "□"  # in figures, for a character that cannot be drawn
+
+D = TypeVar("D", Acceptance, Results)
 
 
 @garbage_kept()
 def render_document(
-    acceptance: Mapping[str, Any], results: Results, templates: Mapping[str, bytes]
+    acceptance: Acceptance, results: Results, templates: Mapping[str, bytes]
 ) -> str:
     """Render the document as HTML: stylesheet, typefaces and figures inside, nothing loaded.
 
     Parameters
     ----------
-    acceptance
-        The dictionary of ``acceptance.json``.
-    results
-        What the analysis found.
     templates
         The user's templates and images by file name; empty for ours alone.
 
@@ -45,28 +41,12 @@ def render_document(
     Raises
     ------
     PosstatsError
-        If the data are not those of a document, a template cannot be rendered or would load
-        something, or no typeface for Chinese is installed.
+        If a template cannot be rendered or would load something, or no typeface for Chinese is
+        installed.
     """
-    try:
-        return _rendered(acceptance, results, templates)
-    except (KeyError, TypeError, AttributeError, IndexError) as error:
-        raise PosstatsError(
-            f"these are not the data of an acceptance document: {error!r}"
-        ) from error
-
-
-def unshown(acceptance: Mapping[str, Any], results: Results) -> str:
-    """Characters of names and ids that no typeface at hand can show."""
-    return cjk.unshown(repr((acceptance, _named(results))))
-
-
-def _rendered(
-    acceptance: Mapping[str, Any], results: Results, templates: Mapping[str, bytes]
-) -> str:
-    acceptance, results = _mapped(acceptance, cjk.legible), _with_texts(results, cjk.legible)
+    acceptance, results = _mapped(acceptance, cjk.legible), _mapped(results, cjk.legible)
     lost = unshown(acceptance, results)
-    words = catalogue(acceptance["language"], *DOMAINS)
+    words = catalogue(acceptance.language, *DOMAINS)
     environment = acceptance_templates.environment(templates, words)
     document = build(acceptance, _drawable(results, lost), lost)
     marks = acceptance_templates.page_number_css(words, document.document_id, document.mark)
@@ -79,6 +59,12 @@ def _rendered(
     return acceptance_templates.render(environment, faces=faces, **values)
 
 
+def unshown(acceptance: Acceptance, results: Results) -> str:
+    """Characters of names and ids that no typeface at hand can show."""
+    shown = acceptance, results.warnings, {model.strip for model in results.models}
+    return cjk.unshown(repr(shown))
+
+
 def _stylesheet(page_numbers: Markup) -> Markup:
     folder = resources.files("posstats.templates")
     sheets = [
@@ -88,28 +74,23 @@ def _stylesheet(page_numbers: Markup) -> Markup:
     return Markup("\n".join([*sheets, page_numbers]))  # noqa: S704 - ours
 
 
-def _named(results: Results) -> list[object]:
-    """What of the results is shown as text."""
-    return [results.warnings, *({row.strip for row in results.models})]
-
-
 def _drawable(results: Results, lost: str) -> Results:
     """Results whose texts figures can draw."""
     boxes = dict.fromkeys(map(ord, lost), BOX)
-    return _with_texts(results, lambda text: text.translate(boxes)) if lost else results
+    return _mapped(results, lambda text: text.translate(boxes)) if lost else results
 
 
-def _with_texts(results: Results, function: Callable[[str], str]) -> Results:
-    """The results with every text changed by a function."""
-    return msgspec.convert(_mapped(as_values(results), function), Results)
+def _mapped(document: D, function: Callable[[str], str]) -> D:
+    """A document with every text changed by a function."""
+    values = _with_texts(as_values(document), function)
+    return from_values(values, type(document), "document")
 
 
-def _mapped(value: Any, function: Callable[[str], str]) -> Any:
-    """Nested lists and dictionaries with every text changed by a function."""
+def _with_texts(value: object, function: Callable[[str], str]) -> object:
     if isinstance(value, str):
         return function(value)
-    if isinstance(value, Mapping):
-        return {key: _mapped(each, function) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_mapped(each, function) for each in value]
+    if isinstance(value, dict):
+        return {key: _with_texts(each, function) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_with_texts(each, function) for each in value]
     return value

@@ -9,7 +9,6 @@ import json
 import re
 from collections.abc import Mapping
 from html.parser import HTMLParser
-from typing import Any
 from xml.etree import ElementTree as ET
 
 from jinja2 import (
@@ -23,6 +22,7 @@ from jinja2 import (
 )
 from jinja2.exceptions import SecurityError
 from jinja2.nodes import ScopedEvalContextModifier
+from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 
@@ -54,7 +54,7 @@ class _Sandbox(ImmutableSandboxedEnvironment):
 
     intercepted_binops = frozenset({"*", "**"})
 
-    def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
+    def call_binop(self, context: Context, operator: str, left: object, right: object) -> object:
         numbers = isinstance(left, int | float) and isinstance(right, int | float)
         if not numbers or operator == "**":
             raise SecurityError(f"the operator {operator} is for small numbers only")
@@ -110,7 +110,7 @@ def page_number_css(catalogue: Catalogue, *marks: str) -> Markup:
     )
 
 
-def render(made: ImmutableSandboxedEnvironment, **values: Any) -> str:
+def render(made: ImmutableSandboxedEnvironment, **values: object) -> str:
     """The page; errors of templates say where they are.
 
     Raises

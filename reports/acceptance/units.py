@@ -1,9 +1,11 @@
 """Numbers of the acceptance document: one unit of length throughout, and a form per quantity."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+
+from posstats.acceptance.quantity_names import QUANTITIES
+from posstats.contract.acceptance import Acceptance, JudgedRequirement
 
 from ..document import format as fmt
 
@@ -15,9 +17,7 @@ MOST_DECIMALS = 6
 COUNTS = {"n_check_points", "n_blunders_h", "n_blunders_v", "sample_size"}
 SHARES = {"measured_share", "quadrant_share"}
 PROBABILITIES = {"remaining_drift_p"}
-AT_LEAST = COUNTS - {"n_blunders_h", "n_blunders_v"} | SHARES | PROBABILITIES
-
-Row = Mapping[str, Any]
+AT_LEAST = {name for name, each in QUANTITIES.items() if each.sense == "at least"}
 
 
 @dataclass(frozen=True)
@@ -36,30 +36,21 @@ class Lengths:
         return _joined(self.number(value_m, fewer), self.unit.name)
 
 
-def lengths(acceptance: Mapping[str, Any]) -> Lengths:
-    """Centimetres, or metres where limits or values are large.
-
-    Parameters
-    ----------
-    acceptance
-        The dictionary of ``acceptance.json``.
-    """
-    rows = [row for row in acceptance["requirements"] if row["unit"] == "m"]
-    limits = [*fmt.present(row["limit"] for row in rows), *_classes(acceptance)]
-    found = fmt.present(row["found"] for row in rows)
-    found += fmt.present(row["value_m"] for row in acceptance["accuracy"]["rmse"])
+def lengths(acceptance: Acceptance) -> Lengths:
+    """Centimetres, or metres where limits or values are large."""
+    rows = [row for row in acceptance.requirements if row.unit == "m"]
+    product = acceptance.product
+    limits = fmt.present([*(row.limit for row in rows), product.class_h_m, product.class_v_m])
+    found = fmt.present(row.found for row in rows)
+    found += fmt.present(row.value_m for row in acceptance.accuracy.rmse)
     fine = min((limit for limit in limits if limit > 0.0), default=1.0) < FINE_M
     large = max(limits, default=0.0) >= LARGE_LIMIT_M or max(found, default=0.0) >= LARGE_VALUE_M
     return Lengths(fmt.METRE, 4 if fine else 3) if large else Lengths(CENTIMETRE, 2 if fine else 1)
 
 
-def _classes(acceptance: Mapping[str, Any]) -> list[float]:
-    return fmt.present(acceptance["product"].get(key) for key in ("class_h_m", "class_v_m"))
-
-
-def pair(row: Row, unit: Lengths) -> tuple[str, str]:
+def pair(row: JudgedRequirement, unit: Lengths) -> tuple[str, str]:
     """Found value and limit of a requirement; different numbers never look the same."""
-    found, limit = row["found"], row["limit"]
+    found, limit = row.found, row.limit
     for more in range(MOST_DECIMALS):
         texts = value(row, found, unit, more), value(row, limit, unit, more)
         if found is None or limit is None or found == limit or texts[0] != texts[1]:
@@ -67,7 +58,7 @@ def pair(row: Row, unit: Lengths) -> tuple[str, str]:
     return texts
 
 
-def value(row: Row, number: float | None, unit: Lengths, more: int = 0) -> str:
+def value(row: JudgedRequirement, number: float | None, unit: Lengths, more: int = 0) -> str:
     """A value of a requirement's quantity with its unit.
 
     Parameters
@@ -81,42 +72,42 @@ def value(row: Row, number: float | None, unit: Lengths, more: int = 0) -> str:
     more
         Decimals beyond the usual.
     """
-    if number is None or fmt.is_missing(number):
+    if number is None:
         return fmt.MISSING
-    if row["unit"] == "m":
+    if row.unit == "m":
         return Lengths(unit.unit, unit.decimals + more).text(number)
-    if row["unit"] == "px":
+    if row.unit == "px":
         return _joined(fmt.fixed(number, 3 + more), "px")
-    return _pure(row["quantity"], number, more)
+    return _pure(row.quantity, number, more)
 
 
-def limit(row: Row, unit: Lengths) -> str:
+def limit(row: JudgedRequirement, unit: Lengths) -> str:
     """The limit of a requirement with the sign of its sense: ``≤ 10.00 cm``."""
-    if fmt.is_missing(row["limit"]):
+    if row.limit is None:
         return fmt.MISSING
-    return f"{'≥' if row['quantity'] in AT_LEAST else '≤'}\u00a0{pair(row, unit)[1]}"
+    return f"{'≥' if row.quantity in AT_LEAST else '≤'}\u00a0{pair(row, unit)[1]}"
 
 
-def margin(row: Row, unit: Lengths) -> str:
+def margin(row: JudgedRequirement, unit: Lengths) -> str:
     """The margin with its sign: above zero within the limit."""
-    if fmt.is_missing(row["margin"]):
+    if row.margin is None:
         return fmt.MISSING
     text = next(
         (
             each
-            for each in (value(row, row["margin"], unit, more) for more in range(MOST_DECIMALS))
-            if row["margin"] == 0.0 or re.search("[1-9]", each)
+            for each in (value(row, row.margin, unit, more) for more in range(MOST_DECIMALS))
+            if row.margin == 0.0 or re.search("[1-9]", each)
         ),
-        value(row, row["margin"], unit),
+        value(row, row.margin, unit),
     )
-    return text if row["margin"] <= 0.0 else f"+{text}"
+    return text if row.margin <= 0.0 else f"+{text}"
 
 
-def interval(row: Row, unit: Lengths, between: str) -> str:
+def interval(row: JudgedRequirement, unit: Lengths, between: str) -> str:
     """Confidence interval of a found value, its unit once."""
-    if fmt.is_missing(row["low"]) or fmt.is_missing(row["high"]):
+    if row.low is None or row.high is None:
         return fmt.MISSING
-    low, high = value(row, row["low"], unit), value(row, row["high"], unit)
+    low, high = value(row, row.low, unit), value(row, row.high, unit)
     return f"{low.split(chr(0xA0))[0]}{between}{high}"
 
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
+from posstats.contract.acceptance import Acceptance
 from posstats.contract.files import to_json
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
@@ -18,7 +18,7 @@ _LARGEST_TEMPLATES = 10_000_000
 
 
 def write_document(
-    acceptance: dict[str, Any],
+    acceptance: Acceptance,
     results: Results,
     templates: Mapping[str, bytes],
     files: Sequence[Attachment],
@@ -40,8 +40,8 @@ def write_document(
     data = Attachment(ACCEPTANCE, text.encode("utf-8"), "Data")
     try:
         if pdf:
-            identifier = acceptance["document_id"].encode("ascii")
-            written = render_archive(page, [*files, data], acceptance["created"], identifier)
+            identifier = acceptance.document_id.encode("ascii")
+            written = render_archive(page, [*files, data], acceptance.created, identifier)
             (folder / "acceptance.pdf").write_bytes(written)
     except PdfUnavailableError as missing:
         return str(missing)

@@ -5,15 +5,21 @@ import json
 import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeVar
 
 import pikepdf
+
+from posstats.contract.acceptance import Acceptance
+from posstats.contract.files import from_json
+from posstats.contract.results import Results
+from posstats.errors import PosstatsError
 
 from .file import ArchiveFile, UnreadableArchiveError
 
 ACCEPTANCE = "acceptance.json"
-SCHEMA = "posstats-acceptance/1"
 LARGEST_DECODED_BYTES = 200_000_000
+
+D = TypeVar("D", Acceptance, Results)
 
 # What reading values of any shape can raise.
 MALFORMED = (
@@ -45,14 +51,24 @@ class Archive:
     pdf
         As its readers show it, with all revisions.
     acceptance, results
-        The values of the embedded acceptance.json and results.json.
+        The embedded acceptance.json and results.json.
     """
 
     file: ArchiveFile
     pdf: pikepdf.Pdf
     files: Mapping[str, EmbeddedFile]
-    acceptance: dict[str, Any]
-    results: dict[str, Any]
+    acceptance: Acceptance
+    results: Results
+
+    @property
+    def stated_acceptance(self) -> dict[str, object]:
+        """The values of acceptance.json as they stand there, with keys that nobody reads."""
+        return _values(self.files[ACCEPTANCE])
+
+    @property
+    def stated_results(self) -> dict[str, object]:
+        """The values of results.json as they stand there."""
+        return _values(self.files[self.acceptance.results.file])
 
 
 def open_archive(file: ArchiveFile) -> Archive:
@@ -72,10 +88,8 @@ def open_archive(file: ArchiveFile) -> Archive:
             raise UnreadableArchiveError(
                 f"it is no acceptance document of posstats: no {ACCEPTANCE} is embedded"
             )
-        acceptance = _values(files, ACCEPTANCE)
-        if acceptance.get("schema") != SCHEMA:
-            raise UnreadableArchiveError(f"the schema of its {ACCEPTANCE} is not {SCHEMA}")
-        results = _values(files, str(acceptance["results"]["file"]))
+        acceptance = _read(files, ACCEPTANCE, Acceptance)
+        results = _read(files, acceptance.results.file, Results)
     except MALFORMED as error:
         raise UnreadableArchiveError(f"its embedded data are damaged ({error})") from error
     return Archive(file, pdf, files, acceptance, results)
@@ -159,10 +173,15 @@ def _specifications(pdf: pikepdf.Pdf) -> Iterator[pikepdf.Object]:
     return iter(()) if tree is None else iter(pikepdf.NameTree(tree).values())
 
 
-def _values(files: Mapping[str, EmbeddedFile], name: str) -> dict[str, Any]:
+def _read(files: Mapping[str, EmbeddedFile], name: str, kind: type[D]) -> D:
     if name not in files:
         raise UnreadableArchiveError(f"the embedded file {name} is missing")
-    values = json.loads(files[name].content)
-    if not isinstance(values, dict):
-        raise UnreadableArchiveError(f"the embedded file {name} does not hold an object")
+    try:
+        return from_json(files[name].content, kind, name)
+    except PosstatsError as error:
+        raise UnreadableArchiveError(f"its embedded data are damaged ({error})") from error
+
+
+def _values(file: EmbeddedFile) -> dict[str, object]:
+    values: dict[str, object] = json.loads(file.content)
     return values

@@ -45,7 +45,7 @@ def sign(data: bytes, key_file: bytes, passphrase: bytes, *, now: dt.datetime) -
     key_file
         PKCS #12: a private key with its certificate, and those of the issuers.
     now
-        For the validity of the certificate; the signature states the time of the computer.
+        The time that the signature states; the certificate has to be valid then.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def sign(data: bytes, key_file: bytes, passphrase: bytes, *, now: dt.datetime) -
     signer = _signer(key_file, passphrase, now)
     try:
         with quiet_pyhanko():
-            signed = _appended(data, signer)
+            signed = _appended(data, signer, now)
     except (PdfError, RefusedSignature, ValueError) as error:
         raise SigningError(f"the signature failed: {error}") from error
     if not signed.startswith(data):
@@ -84,9 +84,9 @@ def quiet_pyhanko() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def _appended(data: bytes, signer: Any) -> bytes:
+def _appended(data: bytes, signer: Any, now: dt.datetime) -> bytes:
     from pyhanko.pdf_utils.incremental_writer import IncrementalPdfFileWriter
-    from pyhanko.sign import PdfSignatureMetadata, sign_pdf
+    from pyhanko.sign import PdfSignatureMetadata, PdfSigner
     from pyhanko.sign.fields import SigSeedSubFilter, enumerate_sig_fields
 
     class Writer(IncrementalPdfFileWriter):
@@ -98,13 +98,22 @@ def _appended(data: bytes, signer: Any) -> bytes:
         def _update_meta(self) -> None:
             """Leave producer and dates alone."""
 
+    class Signer(PdfSigner):
+        """States the time given, where pyHanko reads the clock."""
+
+        def init_signing_session(self, *arguments: Any, **options: Any) -> Any:
+            """Begin to sign, at the time given."""
+            session = super().init_signing_session(*arguments, **options)
+            session.system_time = now.astimezone()
+            return session
+
     writer = Writer(io.BytesIO(data))
     taken = {name for name, _, _ in enumerate_sig_fields(writer)}
     free = next(n for n in range(1, len(taken) + 2) if f"Signature{n}" not in taken)
     settings = PdfSignatureMetadata(
         field_name=f"Signature{free}", md_algorithm="sha256", subfilter=SigSeedSubFilter.PADES
     )
-    signed: bytes = sign_pdf(writer, settings, signer).getvalue()
+    signed: bytes = Signer(settings, signer).sign_pdf(writer).getvalue()
     return signed
 
 

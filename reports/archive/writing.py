@@ -6,17 +6,17 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Any, Literal
+from typing import Any, get_args
 
+from posstats.contract.acceptance import Relationship
 from posstats.errors import PosstatsError
 
 from ..pages import pdf
 from ..pages.garbage import garbage_kept
 from .mending import mend
 
-Relationship = Literal["Data", "Source", "Supplement", "Alternative", "Unspecified"]
 BASE = "posstats:/"  # relative addresses lead nowhere; without any, WeasyPrint fails on some
-RELATIONSHIPS = ("Data", "Source", "Supplement", "Alternative", "Unspecified")
+RELATIONSHIPS = get_args(Relationship)
 
 # Of our files, so that no data base of the system decides on what is written.
 MIME_TYPES = {

@@ -5,20 +5,20 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
+from posstats.contract.acceptance import Acceptance
+from posstats.contract.choices import JudgedOrientation, Language
 from posstats.contract.files import from_json, to_json
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document
-from ..archive.reading import MALFORMED
-from ..archive.writing import Attachment
 from ..block.summary import WIDTH
+from ..block.wording import with_words
 from ..output.progress import Advance, progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
@@ -37,8 +37,8 @@ class Wish:
     profile: str | None
     contract: Path | None
     product: Product
-    orientation: str | None
-    language: str
+    orientation: JudgedOrientation | None
+    language: Language
     templates: Path | None
 
 
@@ -73,35 +73,17 @@ def judge(source: Path, out: Path, wish: Wish, *, pdf: bool = True) -> tuple[str
     demand = Demand(profile, contract, product, wish.orientation, wish.language)
     templates = {} if wish.templates is None else read_templates(wish.templates)
     with staged_folder(out, replaced=("acceptance.pdf",)) as stage, progress_bar("reading") as bar:
-        values, text, sources = _results(source, wish.orientation, bar)
+        found, text, sources = _results(source, wish.orientation, bar)
         bar("assessment", 0.7)
         sources |= {f"templates/{name}": content for name, content in templates.items()}
-        files, acceptance = _judged(source, values, text, demand, sources)
+        files = embedded(found, text, demand, sources)
+        acceptance = assembled(found, demand, files, now())
         bar("writing the document", 0.75)
-        missing = write_document(acceptance, values, templates, files, stage, pdf=pdf)
+        missing = write_document(acceptance, found, templates, files, stage, pdf=pdf)
     written = ["acceptance.html"] + (["acceptance.pdf"] if pdf and not missing else [])
     lines = [*_summary(acceptance), "", *([missing] if missing else [])]
     lines.append(f"document: {', '.join(str(out / name) for name in written)}")
-    return acceptance["verdict"], lines
-
-
-def _judged(
-    source: Path,
-    values: Results,
-    text: bytes,
-    demand: Demand,
-    sources: dict[str, bytes],
-) -> tuple[list[Attachment], dict[str, Any]]:
-    """The embedded files and the values of the document; a file that is none is named."""
-    try:
-        files = embedded(values, text, demand, sources)
-        return files, assembled(values, demand, files, now())
-    except MALFORMED as error:
-        if source.is_dir():  # results of ours, so a fault of ours
-            raise
-        raise PosstatsError(
-            f"{source} does not hold values as posstats analyse writes them: {error!r}"
-        ) from error
+    return acceptance.verdict, lines
 
 
 def _profile_and_contract(wish: Wish) -> tuple[Profile, Contract]:
@@ -120,52 +102,52 @@ def _profile_and_contract(wish: Wish) -> tuple[Profile, Contract]:
 
 
 def _results(
-    source: Path, orientation: str | None, bar: Advance
+    source: Path, orientation: JudgedOrientation | None, bar: Advance
 ) -> tuple[Results, bytes, dict[str, bytes]]:
     """Results, their text, and the block.toml that they come from where the block is given."""
     if not source.is_dir():
-        values, text = _read_results(source)
-        return values, text, {}
+        text = _results_text(source)
+        return from_json(text, Results, str(source)), text, {}
     # an analysis takes a second to import, and results.json needs none
     from posstats.analysis.results import results
-    from posstats.analysis.steps import Settings, analyse
+    from posstats.analysis.steps import analyse
     from posstats.formats.block_folder import read_block
+    from posstats.settings import Settings
 
     block = read_block(source)
     settings = Settings(errors="bundle" if orientation == "bundle" else "coplanarity")
     analysis = analyse(block, settings, progress=lambda step, done: bar(step, 0.7 * done))
-    found = results(analysis, created=now())
-    return found, to_json(found).encode("utf-8"), {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
+    found = with_words(results(analysis, created=now()))
+    text = to_json(found).encode("utf-8")
+    return found, text, {BLOCK_TOML: (source / BLOCK_TOML).read_bytes()}
 
 
-def _read_results(path: Path) -> tuple[Results, bytes]:
-    """A results.json.
+def _results_text(path: Path) -> bytes:
+    """The bytes of a results.json.
 
     Raises
     ------
     PosstatsError
-        If it is something else.
+        If it is too large.
     """
     if path.stat().st_size > _LARGEST_RESULTS:
         raise PosstatsError(f"{path}: more than {_LARGEST_RESULTS // 1_000_000} MB are not read")
-    text = path.read_bytes()
-    return from_json(text, Results, str(path)), text
+    return path.read_bytes()
 
 
-def _summary(acceptance: dict[str, Any]) -> Iterator[str]:
+def _summary(acceptance: Acceptance) -> Iterator[str]:
     """Verdict, requirements and statement, as lines of text."""
-    block = acceptance["block"]
-    simulated = " (simulated)" if block["simulated"] else ""
-    yield f"{acceptance['verdict'].upper()}: {block['name']}{simulated}"
-    profile = acceptance["profile"]
+    simulated = " (simulated)" if acceptance.block.simulated else ""
+    yield f"{acceptance.verdict.upper()}: {acceptance.block.name}{simulated}"
+    profile = acceptance.profile
     yield (
-        f"against {profile['name']} ({profile['edition']}), orientation "
-        f"{acceptance['orientation']}, document {acceptance['document_id']}"
+        f"against {profile.name} ({profile.edition}), orientation "
+        f"{acceptance.orientation}, document {acceptance.document_id}"
     )
     yield ""
-    for row in acceptance["requirements"]:
-        line = f"{row['verdict']:12}  {row['id']}: {row['reason']}"
+    for row in acceptance.requirements:
+        line = f"{row.verdict:12}  {row.id}: {row.reason}"
         yield from textwrap.wrap(line, WIDTH, subsequent_indent=" " * 14)
-    if acceptance["statement"]:
+    if acceptance.statement:
         yield ""
-        yield from textwrap.wrap(acceptance["statement"], WIDTH)
+        yield from textwrap.wrap(acceptance.statement, WIDTH)

@@ -2,13 +2,14 @@
 
 import sys
 from pathlib import Path
-from typing import Any, Literal
+from typing import get_args
 
 import click
 
+from posstats.contract.choices import JudgedOrientation, Language, TerrainKind
 from posstats.errors import PosstatsError
 
-from .command_line import FOLDER, clear_errors, default_out
+from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
 
 
 class _Length(click.ParamType[float]):
@@ -16,7 +17,9 @@ class _Length(click.ParamType[float]):
 
     name = "length"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: str | float, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         from .accept import length_m
 
         if isinstance(value, float):
@@ -28,6 +31,14 @@ class _Length(click.ParamType[float]):
 
 
 LENGTH = _Length()
+
+language_option = click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of what is written or said.",
+)
 
 
 @click.command()
@@ -50,28 +61,22 @@ LENGTH = _Length()
 @click.option("--class-v", type=LENGTH, metavar="LENGTH", help="Vertical accuracy class.")
 @click.option("--gsd", type=LENGTH, metavar="LENGTH", help="Ground sampling distance.")
 @click.option("--scale", type=click.FloatRange(1), metavar="N", help="Map scale 1:N, such as 5000.")
-@click.option("--terrain", type=click.Choice(["flat", "mountain"]), help="Kind of terrain.")
+@click.option("--terrain", type=choice(TerrainKind), help="Kind of terrain.")
 @click.option(
     "--orientation",
-    type=click.Choice(["pos", "selected", "adjusted", "bundle"]),
-    help="Orientation to judge.  [default: the first of bundle, adjusted, selected, pos that the "
-    "results hold]",
+    type=choice(JudgedOrientation),
+    help=f"Orientation to judge.  [default: the first of {', '.join(get_args(JudgedOrientation))} "
+    "that the results hold]",
 )
-@click.option(
-    "--language",
-    type=click.Choice(["en", "zh"]),
-    default="en",
-    show_default=True,
-    help="Of the document.",
-)
+@language_option
 @click.option(
     "--templates",
     type=FOLDER,
     metavar="DIR",
     help="Folder with a logo, a letterhead or other templates of yours.",
 )
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
-@click.option("--no-pdf", is_flag=True, help="Write the document as HTML only.")
+@out_option
+@no_pdf_option("document")
 @click.pass_context
 @clear_errors
 def accept(
@@ -84,9 +89,9 @@ def accept(
     class_v: float | None,
     gsd: float | None,
     scale: float | None,
-    terrain: Literal["flat", "mountain"] | None,
-    orientation: str | None,
-    language: str,
+    terrain: TerrainKind | None,
+    orientation: JudgedOrientation | None,
+    language: Language,
     templates: Path | None,
     out: Path | None,
     no_pdf: bool,
@@ -171,9 +176,10 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     Example:
       posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
     """
+    from ..output import timestamp
     from .sign import sign_file
 
-    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase):
+    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock()):
         click.echo(line)
 
 
@@ -191,8 +197,15 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     metavar="DIR",
     help="Templates that you know; pages of others are not believed.",
 )
+@language_option
 @clear_errors
-def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path | None) -> None:
+def verify(
+    file: Path,
+    inputs: Path | None,
+    trust: Path | None,
+    templates: Path | None,
+    language: Language,
+) -> None:
     """Verify the acceptance document FILE.pdf: a line a question.
 
     Is it signed, by whom, and unchanged since; do the embedded data agree with each other, with
@@ -202,12 +215,15 @@ def verify(file: Path, inputs: Path | None, trust: Path | None, templates: Path 
     Example:
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
+    from ..output import timestamp
     from ..verification.questions import holds
+    from ..verification.words import line, words_of
     from .verify import verify_file
 
-    answers = verify_file(file, inputs, trust, templates)
+    answers = verify_file(file, inputs, trust, templates, now=timestamp.clock())
+    words = words_of(language)
     for each in answers:
-        click.echo(each.line)
+        click.echo(line(words, each))
     if not holds(answers):
         sys.exit(1)
 

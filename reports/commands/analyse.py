@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from posstats.adjustment.calibration import calibrated
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.formats.block_folder import read_block
+from posstats.settings import Settings
 
 from ..block.folder import write_analysis
 from ..block.report import write_report
@@ -13,6 +14,7 @@ from ..block.summary import summary
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
+from .command_line import written
 
 
 def analyse_block(
@@ -31,9 +33,4 @@ def analyse_block(
         progress("writing the report", 0.75)
         missing = write_report(values, stage, pdf=pdf)
     yield from summary(values)
-    yield ""
-    if missing:
-        yield missing
-    yield f"report: {out / 'report.html'}" + (
-        f", {out / 'report.pdf'}" if pdf and not missing else ""
-    )
+    yield from written(out, "report", missing, pdf=pdf)

@@ -8,6 +8,7 @@ from posstats.block.model import Block
 from posstats.formats.block_folder import read_block, write_block
 from posstats.synthetic import Scenario, simulate
 
+from ..block.wording import warnings
 from ..output.staged_folder import staged_folder
 
 
@@ -24,7 +25,7 @@ def check_block(folder: Path) -> Iterator[str]:
     """Validate a block folder; yields a summary."""
     block = read_block(folder)
     yield from _described(block)
-    for warning in block.warnings:
+    for warning in warnings(block.notices):
         yield f"warning: {warning}"
     yield "accepted"
 

@@ -6,16 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.calibration import Calibration, calibrate, write_calibration
 from posstats.adjustment.results import adjustment_results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
+from posstats.settings import AdjustmentSettings
 
 from ..adjustment import verdict as adjustment_verdict
+from ..adjustment.wording import with_words
+from ..adjustment.words import words_in
 from ..block.summary import WIDTH
 from ..document import format as fmt
 from ..output.progress import progress_bar
+from .adjust import adjusted
 
 
 def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> Iterator[str]:
@@ -29,16 +32,16 @@ def calibrate_folder(folder: Path, out: Path, settings: AdjustmentSettings) -> I
     if out.is_dir() or not out.parent.is_dir():
         raise PosstatsError(f"{out} cannot be written: is it a file in a folder that exists?")
     with progress_bar("reading the block") as progress:
-        adjustment = adjust_block(read_block(folder), settings, progress=progress)
+        adjustment = adjusted(read_block(folder), settings, progress)
         calibration = calibrate(adjustment)
     write_calibration(calibration, out)
     yield f"camera {calibration.camera}, from {calibration.n_images} images of {calibration.block}"
     yield from _described(calibration)
-    results = adjustment_results(adjustment)
-    yield f"sigma0: {fmt.number(results['sigma0'])} ({fmt.p_phrase(results['chi2_p'])})"
+    results = with_words(adjustment_results(adjustment))
+    yield f"sigma0: {fmt.number(results.sigma0)} ({fmt.p_phrase(results.chi2_p)})"
     yield ""
-    yield from textwrap.wrap(adjustment_verdict.blunders(results), WIDTH)
-    for warning in results["warnings"]:
+    yield from textwrap.wrap(adjustment_verdict.blunders(words_in("en"), results), WIDTH)
+    for warning in results.warnings:
         yield from textwrap.wrap(f"warning: {warning}", WIDTH, subsequent_indent="  ")
     yield ""
     yield f"calibration: {out}"

@@ -5,14 +5,43 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
-from typing import Literal
+from typing import get_args
 
 import click
 
+from posstats.contract.choices import (
+    DEFAULT_DRIFT,
+    DEFAULT_ERRORS,
+    DEFAULT_FRAME,
+    DEFAULT_ROBUST,
+    DEFAULT_RULES,
+    DEFAULT_SCOPE,
+    DEFAULT_SELF_CALIBRATION,
+    AngleErrorSource,
+    ControlSubset,
+    DriftScope,
+    FrameChoice,
+    Language,
+    RuleSetName,
+    ScenarioName,
+    Scope,
+    SelfCalibration,
+)
 from posstats.version import __version__
 
 from . import acceptance_group as acceptance_cli
-from .command_line import FOLDER, clear_errors, default_out
+from .command_line import (
+    FOLDER,
+    block_argument,
+    calibration_option,
+    choice,
+    clear_errors,
+    default_out,
+    named,
+    no_pdf_option,
+    out_option,
+    seed_option,
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -29,53 +58,53 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--rules",
-    default="paper",
+    default=DEFAULT_RULES,
     show_default=True,
-    metavar="paper|strict|FILE",
+    metavar=named(RuleSetName),
     help="Which angles to correct: the paper's rule, the strict rule, or a TOML file.",
 )
 @click.option(
     "--scope",
-    type=click.Choice(["block", "strip"]),
-    default="block",
+    type=choice(Scope),
+    default=DEFAULT_SCOPE,
     show_default=True,
     help="One regression line for the block, or one per strip.",
 )
 @click.option(
     "--errors",
-    type=click.Choice(["coplanarity", "bundle", "adjusted"]),
-    default="coplanarity",
+    type=choice(AngleErrorSource),
+    default=DEFAULT_ERRORS,
     show_default=True,
     help="Angle errors from the tie points, from a bundle adjustment with control points, or "
     "against adjusted.csv.",
 )
 @click.option(
     "--frame",
-    type=click.Choice(["ground", "camera", "auto"]),
-    default="ground",
+    type=choice(FrameChoice),
+    default=DEFAULT_FRAME,
     show_default=True,
     help="Frame of the regression; auto takes the one that fits better out of sample.",
 )
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=DEFAULT_ROBUST,
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@calibration_option
+@no_pdf_option("report")
 @clear_errors
 def analyse(
     block: Path,
     out: Path | None,
     rules: str,
-    scope: Literal["block", "strip"],
-    errors: Literal["coplanarity", "bundle", "adjusted"],
-    frame: Literal["ground", "camera", "auto"],
+    scope: Scope,
+    errors: AngleErrorSource,
+    frame: FrameChoice,
     robust: bool,
     calibration: Path | None,
     no_pdf: bool,
@@ -89,7 +118,7 @@ def analyse(
     Example:
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
-    from posstats.analysis.steps import Settings
+    from posstats.settings import Settings
 
     from .analyse import analyse_block
 
@@ -100,25 +129,25 @@ def analyse(
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
-@click.option("--out", type=FOLDER, help="Output folder.  [default: out/NAME of the block folder]")
+@block_argument
+@out_option
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points chosen among all ground points, or a file of ids, one on a line; the "
     "others are check points.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["none", "block", "strip"]),
-    default="block",
+    type=choice(DriftScope),
+    default=DEFAULT_DRIFT,
     show_default=True,
     help="Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or strips.",
 )
 @click.option(
     "--self-calibration",
-    type=click.Choice(["none", "bauer", "brown"]),
-    default="none",
+    type=choice(SelfCalibration),
+    default=DEFAULT_SELF_CALIBRATION,
     show_default=True,
     help="Image deformation.",
 )
@@ -132,27 +161,35 @@ def analyse(
 @click.option(
     "--drop-insignificant", is_flag=True, help="Drop free parameters that are not significant."
 )
-@click.option("--calibration", type=FOLDER, metavar="FILE", help="Take a calibration off the POS.")
+@calibration_option
 @click.option(
     "--robust/--no-robust",
-    default=True,
+    default=DEFAULT_ROBUST,
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of the report; adjustment.json stays English.",
+)
+@no_pdf_option("report")
 @clear_errors
 def adjust(
     block: Path,
     out: Path | None,
     control: str | None,
-    drift: Literal["none", "block", "strip"],
-    self_calibration: Literal["none", "bauer", "brown"],
+    drift: DriftScope,
+    self_calibration: SelfCalibration,
     camera: bool,
     lever_arm: bool,
     estimate_weights: bool,
     drop_insignificant: bool,
     calibration: Path | None,
     robust: bool,
+    language: Language,
     no_pdf: bool,
 ) -> None:
     """Adjust the block folder BLOCK as a bundle with its POS, and write a report.
@@ -165,7 +202,7 @@ def adjust(
     Example:
       posstats adjust flight7 --control corners --drift strip --out flight7/adjusted
     """
-    from posstats.adjustment import AdjustmentSettings
+    from posstats.settings import AdjustmentSettings
 
     from .adjust import adjust_folder, control_choice
 
@@ -180,21 +217,23 @@ def adjust(
         robust=robust,
     )
     target = out or default_out(block)
-    for line in adjust_folder(block, target, settings, calibration, pdf=not no_pdf):
+    for line in adjust_folder(
+        block, target, settings, calibration, language=language, pdf=not no_pdf
+    ):
         click.echo(line)
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @click.option("--out", type=FOLDER, required=True, metavar="FILE", help="TOML file to write.")
 @click.option(
     "--control",
-    metavar="none|centre|corners|all|FILE",
+    metavar=named(ControlSubset),
     help="Control points, as of adjust.  [default: the roles of ground_points.csv]",
 )
 @click.option(
     "--drift",
-    type=click.Choice(["block", "strip"]),
+    type=choice(Scope),
     default="strip",
     show_default=True,
     help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
@@ -205,7 +244,7 @@ def calibrate(
     block: Path,
     out: Path,
     control: str | None,
-    drift: Literal["block", "strip"],
+    drift: Scope,
     lever_arm: bool,
 ) -> None:
     """Estimate the boresight of the POS from the calibration flight BLOCK.
@@ -218,7 +257,7 @@ def calibrate(
       posstats calibrate field --out boresight.toml
       posstats analyse flight7 --calibration boresight.toml
     """
-    from posstats.adjustment import AdjustmentSettings
+    from posstats.settings import AdjustmentSettings
 
     from .adjust import control_choice
     from .calibrate import calibrate_folder
@@ -230,10 +269,8 @@ def calibrate(
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
@@ -254,10 +291,8 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the simulation."
-)
-@click.option("--no-pdf", is_flag=True, help="Write the report as HTML only.")
+@seed_option
+@no_pdf_option("report")
 @clear_errors
 def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     """Reproduce the second source paper: POS errors removed in the bundle adjustment.
@@ -281,8 +316,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     "--scenario",
     type=FOLDER,
     metavar="FILE",
-    help="Scenario file (docs/simulation.md), or one of area1, area1-small, area2, "
-    "area3, wucaps-flat, wucaps-mountain.",
+    help=f"Scenario file (docs/simulation.md), or one of {', '.join(get_args(ScenarioName))}.",
 )
 @click.option("--area", type=click.IntRange(1, 3), help="A test area of the source paper.")
 @click.option("--out", type=FOLDER, required=True, help="Block folder to write.")
@@ -313,7 +347,7 @@ def simulate(scenario: Path | None, area: int | None, out: Path, seed: int | Non
 
 
 @cli.command()
-@click.argument("block", type=FOLDER)
+@block_argument
 @clear_errors
 def check(block: Path) -> None:
     """Validate the block folder BLOCK and print a summary.

@@ -17,6 +17,7 @@ from ..output.timestamp import now
 from ..papers.drift import document as paper_document
 from ..papers.drift.areas import run_areas
 from ..papers.drift.conclusions import Conclusion, conclusions
+from .command_line import written
 
 SCHEMA = "posstats-comparison/1"
 
@@ -38,12 +39,7 @@ def reproduce_paper(out: Path, seed: int, *, pdf: bool) -> Iterator[str]:
         missing = write_pages(document, stage / "paper", pdf=pdf)
     for number, each in enumerate(found, start=1):
         yield f"{number}. {each.title}: {'holds' if each.holds else 'DOES NOT HOLD'}"
-    yield ""
-    if missing:
-        yield missing
-    yield f"report: {out / 'paper.html'}" + (
-        f", {out / 'paper.pdf'}" if pdf and not missing else ""
-    )
+    yield from written(out, "paper", missing, pdf=pdf)
 
 
 def _comparison(run: Reproduction, found: Sequence[Conclusion], created: str) -> str:

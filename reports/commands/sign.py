@@ -16,7 +16,13 @@ LARGEST_KEY_BYTES = 1_000_000
 
 
 def sign_file(
-    path: Path, key: Path, out: Path, passphrase_file: Path | None, ask: Callable[[], str]
+    path: Path,
+    key: Path,
+    out: Path,
+    passphrase_file: Path | None,
+    ask: Callable[[], str],
+    *,
+    now: dt.datetime,
 ) -> Iterator[str]:
     """Sign `path` into `out`; yields the lines for the terminal.
 
@@ -24,6 +30,8 @@ def sign_file(
     ----------
     ask
         Asks for the passphrase; called last, when all else is in order.
+    now
+        The time that the signature states.
 
     Raises
     ------
@@ -36,14 +44,14 @@ def sign_file(
     document_id = _document_id(path, data)
     key_file = _small_file(key)
     passphrase = ask() if passphrase_file is None else _first_line(passphrase_file)
-    signed = sign(data, key_file, passphrase.encode(), now=dt.datetime.now(dt.UTC))
+    signed = sign(data, key_file, passphrase.encode(), now=now)
     _write(out, signed)
     yield f"signed: {document_id} in {out}"
 
 
 def _document_id(path: Path, data: bytes) -> str:
     try:
-        return str(open_archive(part(data)).acceptance.get("document_id"))
+        return open_archive(part(data)).acceptance.document_id
     except UnreadableArchiveError as error:
         raise UnreadableArchiveError(f"{path} is not signed: {error}") from error
 

@@ -5,27 +5,30 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from posstats.contract.files import as_values, from_values
-from posstats.contract.results import Results
 from posstats.contract.versions import versions
 from posstats.errors import PosstatsError
 from posstats.version import __version__
 
-from ..acceptance.data import RESULTS, reassess
+from ..acceptance.data import reassess
 from ..acceptance.page import render_document
 from ..acceptance.writing import read_templates
 from ..archive.file import read_file
+from ..verification.answers import Answer
 from ..verification.questions import verify
 from ..verification.recomputation import recompute
 from ..verification.signature import read_trust
-from ..verification.steps import Steps, Values
-from ..verification.words import Answer
+from ..verification.steps import Steps
 
 
 def verify_file(
-    path: Path, inputs: Path | None, trust_file: Path | None, templates: Path | None = None
+    path: Path,
+    inputs: Path | None,
+    trust_file: Path | None,
+    templates: Path | None = None,
+    *,
+    now: dt.datetime,
 ) -> Sequence[Answer]:
-    """Answer every question on the document `path`.
+    """Answer every question on the document `path`, as of `now`.
 
     Raises
     ------
@@ -37,7 +40,6 @@ def verify_file(
     if inputs is not None and not inputs.is_dir():
         raise PosstatsError(f"{inputs} is no block folder")
     trust = None if trust_file is None else _trust(trust_file)
-    now = dt.datetime.now(dt.UTC)
     known = None if templates is None else read_templates(templates)
     return list(verify(path, steps(), inputs=inputs, trust=trust, templates=known, now=now))
 
@@ -45,17 +47,12 @@ def verify_file(
 def steps() -> Steps:
     """The steps of the installed version."""
     return Steps(
-        recompute=lambda folder, pattern: as_values(recompute(folder, _typed(pattern))),
-        reassess=lambda found, files, stated: reassess(_typed(found), files, stated),
-        render_document=lambda stated, found, named: render_document(stated, _typed(found), named),
+        recompute=recompute,
+        reassess=reassess,
+        render_document=render_document,
         numbers={"posstats": __version__, **versions()},
         layout=f"posstats {__version__}, WeasyPrint {version('weasyprint')}",
     )
-
-
-def _typed(values: Values) -> Results:
-    """Embedded results, which a document of another maker may lack or spoil."""
-    return from_values(values, Results, RESULTS)
 
 
 def _trust(path: Path) -> list[bytes]:

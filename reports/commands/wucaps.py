@@ -22,6 +22,7 @@ from ..output.timestamp import now
 from ..papers.drift.conclusions import Conclusion
 from ..papers.wucaps import document as wucaps_document
 from ..papers.wucaps.conclusions import beyond, conclusions
+from .command_line import written
 
 SCHEMA = "posstats-wucaps/1"
 
@@ -45,12 +46,7 @@ def reproduce_wucaps(out: Path, seed: int, *, pdf: bool) -> Iterator[str]:
         missing = write_pages(document, stage / "wucaps", pdf=pdf)
     for number, each in enumerate(found, start=1):
         yield f"{number}. {each.title}: {'holds' if each.holds else 'DOES NOT HOLD'}"
-    yield ""
-    if missing:
-        yield missing
-    yield f"report: {out / 'wucaps.html'}" + (
-        f", {out / 'wucaps.pdf'}" if pdf and not missing else ""
-    )
+    yield from written(out, "wucaps", missing, pdf=pdf)
 
 
 def _json(

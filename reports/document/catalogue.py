@@ -11,12 +11,14 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from typing import get_args
 
 from babel.messages.pofile import read_po
 
+from posstats.contract.choices import Language
 from posstats.errors import PosstatsError
 
-LANGUAGES = ("en", "zh")
+LANGUAGES: tuple[Language, ...] = get_args(Language)
 _PATH = "locale/{language}/LC_MESSAGES/{domain}.po"
 
 
@@ -54,8 +56,12 @@ class Catalogue:
         return self._forms(message)[0].format(**values)
 
     def plural(self, message: str, n: int, /, **values: str) -> str:
-        """A message in the form for a count; the count itself is a value as any other."""
-        return self._forms(message)[self.form_of(n)].format(**values)
+        """A message in the form for a count; the count itself is a value as any other.
+
+        Where a message has one form, this is the form for every count.
+        """
+        forms = self._forms(message)
+        return forms[min(self.form_of(n), len(forms) - 1)].format(**values)
 
     def of(self, family: str, key: str, /, **values: str) -> str:
         """The message of a family for a key of the data: ``of("verdict", "not assessable")``."""

@@ -186,7 +186,9 @@ def rate(value_rad_per_s: float | None) -> str:
     return f"{scientific(value_rad_per_s)}\u00a0rad/s ({per_hour}°/h)"
 
 
-def by_name(name: str, value: object, join: Callable[[Iterable[str]], str]) -> str:
+def by_name(
+    name: str, value: object, join: Callable[[Iterable[str]], str], *, plain: bool = False
+) -> str:
     """A value of a notice as text: its unit is the suffix of its name.
 
     Parameters
@@ -197,18 +199,44 @@ def by_name(name: str, value: object, join: Callable[[Iterable[str]], str]) -> s
         A number, a text, several texts, or None.
     join
         Makes an enumeration of texts.
+    plain
+        Leave counts, and numbers of `_DIGITS`, as Python prints them.
     """
     if isinstance(value, str):
         return value
     if isinstance(value, tuple | list):
-        return join(by_name(name, each, join) for each in value)
+        return join(by_name(name, each, join, plain=plain) for each in value)
     if value is None or not isinstance(value, int | float):
         return MISSING
+    if name in _DIGITS:
+        return _DIGITS[name](value) if plain else prose(_DIGITS[name](value))
     for suffix, write in _WRITTEN.items():
         if name.endswith(suffix):
             return write(value)
-    return count(value) if isinstance(value, int) else number(value)
+    if isinstance(value, int):
+        return str(value) if plain else count(value)
+    return number(value)
 
+
+def _short_p_phrase(value: float) -> str:
+    return f"p < {SMALLEST_P}" if value < SMALLEST_P else f"p = {value:.2g}"
+
+
+# Names whose numbers have digits of their own; their unit stands in the sentence.
+_DIGITS: dict[str, Callable[[float], str]] = {
+    "slope_rad_per_s": "{:.2e}".format,
+    "slope_se_rad_per_s": "{:.1e}".format,
+    "constant_rad": "{:.2e}".format,
+    "constant_se_rad": "{:.1e}".format,
+    "r_squared": "{:.3f}".format,
+    "min_r_squared": "{:g}".format,
+    "p": _short_p_phrase,
+    "alpha": "{:g}".format,
+    "change_share": "{:.1%}".format,
+    "min_gain_share": "{:.0%}".format,
+    "prior_fraction": "{:g}".format,
+    "n_sigmas": "{:g}".format,
+}
 
 _WRITTEN: dict[str, Callable[[float], str]] = {
     "_rad_per_s": rate,

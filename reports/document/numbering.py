@@ -53,6 +53,11 @@ class ReportDocument(Front):
     sections: tuple[Section, ...]
 
     @property
+    def delivered(self) -> str:
+        """The subtitle, by the name that templates of an acceptance document know it by."""
+        return self.subtitle
+
+    @property
     def text(self) -> str:
         """Every character that can be shown, for choosing the glyphs to embed."""
         return repr(self)

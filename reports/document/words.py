@@ -7,7 +7,9 @@ from functools import cached_property
 from posstats.contract.notice import Notice
 
 from . import format as fmt
-from .catalogue import Catalogue
+from .catalogue import Catalogue, name_in
+
+_LISTED = ("ids", "lines")  # values of a notice that stand one after the other
 
 
 @dataclass(frozen=True)
@@ -50,8 +52,41 @@ class Words:
         missing = fmt.MISSING in (low, high)
         return fmt.MISSING if missing else f"{low}{self.text('interval.between')}{high}"
 
-    def notice(self, said: Notice) -> str:
-        """A notice of the analysis in words; its values are written by the suffix of their name."""
-        return self.of("notice", said.code, **{
-            name: fmt.by_name(name, value, self.joined) for name, value in said.values.items()
-        })  # fmt: skip
+    def notice(self, said: Notice, *, plain: bool = False) -> str:
+        """A notice in words: numbers are written by their names, plurals decided by its ``n``.
+
+        `plain` leaves numbers as Python prints them. A text among the values is translated where
+        the catalogue has ``value.<name>.<text>``.
+        """
+        values = {name: self._written(said, name, plain) for name in said.values}
+        n = said.values.get("n")
+        message = name_in("notice", said.code)
+        if isinstance(n, int):
+            return self.catalogue.plural(message, n, **values)
+        return self.text(message, **values)
+
+    def reason(self, said: Iterable[Notice], *, plain: bool = False) -> str:
+        """Notices that give one reason together: clauses of a sentence."""
+        return self.text("clause.between").join(self.notice(each, plain=plain) for each in said)
+
+    def _written(self, said: Notice, name: str, plain: bool) -> str:
+        value = said.values[name]
+        if name == "why":
+            others = {key: each for key, each in said.values.items() if key != "why"}
+            return self.notice(Notice(code=str(value), values=others), plain=plain)
+        if isinstance(value, str):
+            key = f"{name}.{value}"
+            return self.of("value", key) if self.catalogue.holds("value", key) else value
+        if name in _LISTED and isinstance(value, tuple | list):
+            return self._first(value, said, plain)
+        return fmt.by_name(name, value, self.joined, plain=plain)
+
+    def _first(self, texts: Iterable[object], said: Notice, plain: bool) -> str:
+        """Texts in a row; if they are the first few of ``n``, how many there are besides."""
+        shown = [str(each) for each in texts]
+        n = said.values.get("n")
+        hidden = n - len(shown) if isinstance(n, int) else 0
+        if hidden <= 0:
+            return self.text("list.between").join(shown)
+        more = str(hidden) if plain else fmt.count(hidden)
+        return self.joined([*shown, self.text("list.more", n=more)])

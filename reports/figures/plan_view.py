@@ -128,7 +128,8 @@ def difference_arrows(
     tails = view.drawn(start[known]).T
     tips = view.drawn(start[known] + scale * difference[known]).T
     for tail, tip in zip(tails, tips, strict=True):
-        axis.annotate("", tuple(tip), tuple(tail), arrowprops=look, zorder=4)
+        axis.annotate("", tuple(tip), tuple(tail), arrowprops=look, zorder=4,
+                      annotation_clip=False)  # fmt: skip  # else none that ends outside
 
 
 def many_arrows(

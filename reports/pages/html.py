@@ -54,13 +54,33 @@ def render(document: ReportDocument) -> str:
         undefined=StrictUndefined,
         **WHITE_SPACE,
     )
-    dress(environment, catalogue(document.language, "document"))
-    css = resources.files("posstats.templates").joinpath("report.css").read_text(encoding="utf-8")
-    template = environment.get_template(TEMPLATE)
+    words = catalogue(document.language, "document")
+    dress(environment, words)
     faces = fonts.faces(document.text)
     if document.language == "zh":
-        faces = (*faces, *cjk.faces(document.text))
-    return template.render(report=document, css=Markup(css), faces=faces)  # noqa: S704 - ours
+        faces = (*faces, *cjk.faces(document.text + _every_text(words)))
+    template = environment.get_template(TEMPLATE)
+    return template.render(report=document, css=_stylesheet(words), faces=faces)
+
+
+def _stylesheet(words: Catalogue) -> Markup:
+    """The rules of all pages; Chinese ones have a typeface and page numbers of their own."""
+    css = _sheet("report.css")
+    if words.language == "zh":
+        before, between, after = (
+            f'"{words.text(f"page.{place}")}"' for place in ("before", "between", "after")
+        )
+        number = f"{before} counter(page) {between} counter(pages) {after}"
+        css = f"{css}\n{_sheet('chinese.css')}@page {{ @bottom-right {{ content: {number}; }} }}\n"
+    return Markup(css)  # noqa: S704 - ours
+
+
+def _sheet(name: str) -> str:
+    return resources.files("posstats.templates").joinpath(name).read_text(encoding="utf-8")
+
+
+def _every_text(words: Catalogue) -> str:
+    return "".join(form for forms in words.messages.values() for form in forms)
 
 
 def dress(environment: Environment, words: Catalogue) -> None:

@@ -5,25 +5,15 @@ from collections.abc import Iterator, Mapping
 import pikepdf
 from jinja2 import TemplateError
 
+from posstats.contract.acceptance import Acceptance
+from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 
 from ..archive.reading import MALFORMED, Archive, decoded, open_pdf, written
 from ..archive.writing import Attachment, render_archive
-from .steps import Steps, Values
+from .answers import PAGES, Answer, answer, failed, said
+from .steps import Steps
 from .text import page_texts
-from .words import (
-    NOT_HERE,
-    PAGES,
-    SAME_BYTES,
-    SAME_DECODED,
-    Answer,
-    answer,
-    failed,
-    listed,
-    other_versions,
-    own_templates,
-    same_text,
-)
 
 TEMPLATES = "templates/"
 
@@ -39,18 +29,19 @@ def pages(archive: Archive, steps: Steps, known: Mapping[str, bytes] | None = No
     """
     strange = _unknown_templates(archive, known or {})
     if strange:
-        return failed(PAGES, own_templates(strange))
+        return failed(PAGES, said("own_templates", files=tuple(strange)))
     try:
         again = rebuilt(archive, steps)
         if again == archive.file.first:
-            return answer(PAGES, [], SAME_BYTES)
+            return answer(PAGES, [], said("same_bytes"))
         shown, made = open_pdf(archive.file.first), open_pdf(again)
         if made_with(archive.acceptance) == steps.layout:
             problems = _differences(shown, made) or _unexplained(shown, made)
-            return answer(PAGES, problems, SAME_DECODED)
+            return answer(PAGES, problems, said("same_contents"))
         return _text_answer(archive, steps, shown, made)
     except (PosstatsError, OSError, TemplateError, *MALFORMED) as error:
-        return failed(PAGES, f"they cannot be compared ({type(error).__name__}: {error})")
+        reason = f"{type(error).__name__}: {error}"
+        return failed(PAGES, said("pages_incomparable", reason=reason))
 
 
 def _unknown_templates(archive: Archive, known: Mapping[str, bytes]) -> list[str]:
@@ -78,49 +69,47 @@ def rebuilt(archive: Archive, steps: Steps) -> bytes:
         Attachment(name, file.content, file.relationship)  # type: ignore[arg-type]
         for name, file in archive.files.items()
     ]
-    identifier = str(acceptance["document_id"]).encode("ascii")
-    return render_archive(html, attachments, acceptance["created"], identifier)
+    identifier = acceptance.document_id.encode("ascii")
+    return render_archive(html, attachments, acceptance.created, identifier)
 
 
-def made_with(acceptance: Values) -> str:
-    """Versions that the pages depend on, as acceptance values state them."""
-    return (
-        f"posstats {acceptance['posstats_version']},"
-        f" WeasyPrint {acceptance['versions']['weasyprint']}"
-    )
+def made_with(acceptance: Acceptance) -> str:
+    """Versions that the pages depend on, as an acceptance states them."""
+    weasyprint = acceptance.versions.get("weasyprint")
+    return f"posstats {acceptance.posstats_version}, WeasyPrint {weasyprint}"
 
 
-def _differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> list[str]:
+def _differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> list[Notice]:
     if len(shown.pages) != len(made.pages):
-        return [f"it has {len(shown.pages)} pages, the data make {len(made.pages)}"]
+        return [said("page_count", n_shown=len(shown.pages), n_made=len(made.pages))]
     pairs = enumerate(zip(shown.pages, made.pages, strict=True), 1)
     found = [
-        f"page {number} is not what the data make"
+        said("page_differs", number=number)
         for number, (one, other) in pairs
         if decoded(one.Contents) != decoded(other.Contents)
     ]
     return found or list(_other_differences(shown, made))
 
 
-def _other_differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> Iterator[str]:
+def _other_differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> Iterator[Notice]:
     """What pages share: fonts, figures, links, tags, metadata."""
     if len(shown.objects) != len(made.objects):
-        yield "it holds other objects than the data make"
+        yield said("other_objects")
         return
     for one, other in zip(shown.objects, made.objects, strict=True):
         if _unpacked(one) != _unpacked(other):
-            yield f"object {one.objgen[0]} ({_kind(one)}) is not what the data make"
+            yield said("object_differs", number=one.objgen[0], kind=_kind(one))
 
 
-def _unexplained(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> list[str]:
+def _unexplained(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> list[Notice]:
     """Bytes differ although all objects are the same: another compression changes most streams."""
     pairs = zip(shown.objects, made.objects, strict=True)
     streams = [(one, other) for one, other in pairs if isinstance(one, pikepdf.Stream)]
     changed = [one for one, other in streams if one.read_raw_bytes() != other.read_raw_bytes()]
     if 2 * len(changed) >= len(streams):
         return []
-    names = [f"object {each.objgen[0]} was packed again" for each in changed]
-    return names or ["bytes that belong to no page or file were changed"]
+    repacked = [said("object_repacked", number=each.objgen[0]) for each in changed]
+    return repacked or [said("other_bytes")]
 
 
 def _unpacked(value: pikepdf.Object) -> tuple[object, bytes]:
@@ -142,18 +131,24 @@ def _kind(value: pikepdf.Object) -> str:
 
 
 def _text_answer(archive: Archive, steps: Steps, shown: pikepdf.Pdf, made: pikepdf.Pdf) -> Answer:
-    other = other_versions(made_with(archive.acceptance), steps.layout)
+    versions = {"made": made_with(archive.acceptance), "here": steps.layout}
+    problems = list(_text_differences(shown, made))
+    if problems:
+        return failed(PAGES, *problems, said("other_versions", **versions), hedged=True)
+    return answer(PAGES, [], said("same_text", **versions))
+
+
+def _text_differences(shown: pikepdf.Pdf, made: pikepdf.Pdf) -> Iterator[Notice]:
     if _title(shown) != _title(made):
-        return failed(PAGES, f"{NOT_HERE}: the title or author differs; {other}")
-    said, again = page_texts(shown), page_texts(made)
-    if len(said) != len(again):
-        return failed(PAGES, f"{NOT_HERE}: {len(said)} pages, not {len(again)}; {other}")
-    found = [
-        f"page {n}" for n, pair in enumerate(zip(said, again, strict=True), 1) if len(set(pair)) > 1
-    ]
-    if found:
-        return failed(PAGES, f"{NOT_HERE}: the text differs on {listed(found)}; {other}")
-    return answer(PAGES, [], same_text(other))
+        yield said("title_differs")
+        return
+    told, again = page_texts(shown), page_texts(made)
+    if len(told) != len(again):
+        yield said("page_count", n_shown=len(told), n_made=len(again))
+        return
+    for number, (one, other) in enumerate(zip(told, again, strict=True), 1):
+        if one != other:
+            yield said("text_differs", number=number)
 
 
 def _title(pdf: pikepdf.Pdf) -> dict[str, str]:

@@ -10,23 +10,24 @@ from pathlib import Path
 
 from ..archive.file import UnreadableArchiveError, part, read_file
 from ..archive.reading import MALFORMED, Archive, open_archive
-from .data import assessment, embedded_files, input_files, recomputed
-from .pages import pages
-from .signature import count_signatures, signatures
-from .steps import Steps
-from .updates import appended
-from .words import (
+from .answers import (
     APPENDED,
     INPUTS,
-    NO_INPUTS,
     READABLE,
     RECOMPUTED,
     Answer,
     Standing,
     answer,
+    caught,
     failed,
-    readable,
+    not_asked,
+    said,
 )
+from .data import assessment, embedded_files, input_files, recomputed
+from .pages import pages
+from .signature import count_signatures, signatures
+from .steps import Steps
+from .updates import appended
 
 
 def verify(
@@ -60,10 +61,11 @@ def verify(
         archive = open_archive(part(read_file(path)))
         n_signatures = count_signatures(archive.pdf)
     except UnreadableArchiveError as error:
-        yield failed(READABLE, error)
+        yield failed(READABLE, caught("because", error))
         return
     stated = archive.acceptance
-    yield answer(READABLE, [], readable(stated.get("document_id"), stated.get("verdict")))
+    holds = said("readable", document_id=stated.document_id, verdict=stated.verdict)
+    yield answer(READABLE, [], holds)
     yield from signatures(archive.file, n_signatures, trust, now)
     yield _on_updates(archive, n_signatures)
     yield embedded_files(archive)
@@ -81,13 +83,13 @@ def _on_updates(archive: Archive, n_signatures: int) -> Answer:
     try:
         return appended(archive.file, archive.pdf, n_signatures)
     except (UnreadableArchiveError, *MALFORMED) as error:
-        return failed(APPENDED, f"it cannot be compared with its first state ({error})")
+        return failed(APPENDED, caught("updates_incomparable", error))
 
 
 def _on_inputs(archive: Archive, inputs: Path | None, steps: Steps) -> Iterator[Answer]:
     if inputs is None:
-        yield Answer(Standing.NOT_ASKED, INPUTS, NO_INPUTS)
-        yield Answer(Standing.NOT_ASKED, RECOMPUTED, NO_INPUTS)
+        yield not_asked(INPUTS, said("no_inputs"))
+        yield not_asked(RECOMPUTED, said("no_inputs"))
     else:
         yield input_files(archive, inputs)
         yield recomputed(archive, inputs, steps)

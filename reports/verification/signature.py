@@ -12,22 +12,26 @@ from posstats.errors import PosstatsError
 from ..archive.file import ArchiveFile, UnreadableArchiveError
 from ..archive.reading import MALFORMED
 from ..archive.signing import PyHankoMissingError, quiet_pyhanko, require_pyhanko
-from .words import (
-    NO_ANCHOR,
+from .answers import (
     SIGNED,
     TRUSTED,
-    UNSIGNED,
-    UNSIGNED_TRUST,
     Answer,
+    Question,
     Standing,
     answer,
-    certificate_question,
+    caught,
     failed,
-    intact_question,
-    trust_question,
+    not_asked,
+    said,
 )
 
 CLOCKS_DIFFER = dt.timedelta(minutes=10)
+
+# Of pyHanko and asn1crypto, which are imported where they are needed and have no types.
+Signature = Any
+Status = Any
+Certificate = Any
+Name = Any
 
 
 class TrustError(PosstatsError):
@@ -84,16 +88,16 @@ def signatures(
         Certificates, DER; None: trust is not asked for.
     """
     if not n_found:
-        unsigned = [Answer(Standing.NOT_SIGNED, SIGNED, UNSIGNED)]
-        return unsigned if trust is None else [*unsigned, failed(TRUSTED, UNSIGNED_TRUST)]
+        unsigned = [Answer(Standing.NOT_SIGNED, SIGNED, (said("unsigned"),))]
+        return unsigned if trust is None else [*unsigned, failed(TRUSTED, said("nobody_signed"))]
     try:
         require_pyhanko()
         with quiet_pyhanko():
             return list(_judged(file, n_found, trust, now))
     except PyHankoMissingError as error:
-        return [failed(intact_question("the signature"), error)]
+        return [failed(Question("intact"), caught("because", error))]
     except MALFORMED as error:
-        return [failed(intact_question("the signature"), f"it cannot be read ({error})")]
+        return [failed(Question("intact"), caught("signature_unreadable", error))]
 
 
 def _judged(
@@ -105,20 +109,25 @@ def _judged(
     try:
         found = PdfFileReader(io.BytesIO(file.data)).embedded_signatures
     except PdfError as error:
-        yield failed(intact_question("the signature"), f"it cannot be read ({error})")
+        yield failed(Question("intact"), caught("signature_unreadable", error))
         return
     if len(found) != n_found:
-        yield failed(SIGNED, f"{n_found} signatures, but {len(found)} in fields for signatures")
-    for number, signature in enumerate(found, 1):
-        name = f"signature {number}" if len(found) > 1 else "the signature"
+        problem = said("signatures_outside_fields", n_found=n_found, n_fields=len(found))
+        yield failed(SIGNED, problem)
+    for place, signature in enumerate(found, 1):
+        number = place if len(found) > 1 else None
         if signature.sig_object_type == "/DocTimeStamp":
-            yield Answer(Standing.NOT_ASKED, intact_question(name), "a time stamp, not checked")
+            yield not_asked(Question("intact", number), said("time_stamp"))
             continue
-        yield from _judge(file, signature, name, trust, now)
+        yield from _judge(file, signature, number, trust, now)
 
 
 def _judge(
-    file: ArchiveFile, signature: Any, name: str, trust: Sequence[bytes] | None, now: dt.datetime
+    file: ArchiveFile,
+    signature: Signature,
+    number: int | None,
+    trust: Sequence[bytes] | None,
+    now: dt.datetime,
 ) -> Iterator[Answer]:
     from pyhanko.pdf_utils.misc import PdfError
     from pyhanko.sign.validation.errors import SignatureValidationError
@@ -126,15 +135,16 @@ def _judge(
     try:
         status = _status(signature, trust or (), now)
     except (PdfError, SignatureValidationError, *MALFORMED) as error:
-        yield failed(intact_question(name), f"it cannot be checked ({error})")
+        yield failed(Question("intact", number), caught("signature_unchecked", error))
         return
     certificate = signature.signer_cert
-    yield _intact(file, signature, status, name)
-    yield _in_force(certificate, signature.self_reported_timestamp, name, now)
-    yield _trusted(status, certificate, name, trust)
+    yield _intact(file, signature, status, Question("intact", number))
+    claimed = signature.self_reported_timestamp
+    yield _in_force(certificate, claimed, Question("in_force", number), now)
+    yield _trusted(status, certificate, Question("signer_trusted", number), trust)
 
 
-def _status(signature: Any, trust: Sequence[bytes], now: dt.datetime) -> Any:
+def _status(signature: Signature, trust: Sequence[bytes], now: dt.datetime) -> Status:
     """PyHanko's status; nothing is fetched, and the system's list of authorities is not used."""
     from asn1crypto import x509
     from pyhanko.sign.validation import validate_pdf_signature
@@ -151,23 +161,26 @@ def _status(signature: Any, trust: Sequence[bytes], now: dt.datetime) -> Any:
     return validate_pdf_signature(signature, context, key_usage_settings=usage)
 
 
-def _intact(file: ArchiveFile, signature: Any, status: Any, name: str) -> Answer:
+def _intact(file: ArchiveFile, signature: Signature, status: Status, question: Question) -> Answer:
     from pyhanko.sign.diff_analysis import SuspiciousModification
 
     problems = []
     covered = _covered_bytes(file.data, signature)
     if not (status.intact and status.valid and _is_consistent(signature)):
-        problems.append("no, what was signed has been changed, or the signature itself")
+        problems.append(said("signed_changed"))
     elif covered not in file.ends:
-        problems.append("no, it does not cover all that was there when it was made")
+        problems.append(said("signed_incompletely"))
     elif isinstance(status.diff_result, SuspiciousModification):
-        problems.append(f"no, the document was changed after it ({status.diff_result})")
-    whole = covered == len(file.data)
-    extent = "the whole file" if whole else f"the first {covered} bytes, later ones follow"
-    return answer(intact_question(name), problems, f"yes, over {extent}, by {_signer(signature)}")
+        problems.append(said("changed_after_signature", reason=str(status.diff_result)))
+    signer = _readable(signature.signer_cert.subject)
+    holds = (
+        said("signed_whole", signer=signer) if covered == len(file.data)
+        else said("signed_part", n_bytes=covered, signer=signer)
+    )  # fmt: skip
+    return answer(question, problems, holds)
 
 
-def _covered_bytes(data: bytes, signature: Any) -> int | None:
+def _covered_bytes(data: bytes, signature: Signature) -> int | None:
     """Up to where a signature covers everything but itself; None if it does not."""
     if len(signature.byte_range) != 4:
         return None
@@ -187,7 +200,7 @@ def _hides_bytes(content: bytes) -> bool:
     return not content.startswith(encoded) or any(content[len(encoded) :])
 
 
-def _is_consistent(signature: Any) -> bool:
+def _is_consistent(signature: Signature) -> bool:
     """Whether the parts of a CMS object that are not signed are what they have to be."""
     data, signer, certificate = (
         signature.signed_data,
@@ -209,43 +222,42 @@ def _is_consistent(signature: Any) -> bool:
     )
 
 
-def _signer(signature: Any) -> str:
-    return _readable(signature.signer_cert.subject)
-
-
-def _readable(name: Any) -> str:
+def _readable(name: Name) -> str:
     return str(name.human_friendly)
 
 
-def _in_force(certificate: Any, claimed: dt.datetime | None, name: str, now: dt.datetime) -> Answer:
+def _in_force(
+    certificate: Certificate, claimed: dt.datetime | None, question: Question, now: dt.datetime
+) -> Answer:
     """The signing time is the signer's own statement: no certificate is in force by that alone."""
-    begin, end = certificate.not_valid_before, certificate.not_valid_after
-    span = f"valid from {begin:%Y-%m-%d} to {end:%Y-%m-%d}"
-    problems = []
     if claimed is None:
-        problems.append("the signature states no time")
-    elif not begin <= claimed <= end:
-        problems.append(f"no, {span}, but signed on {claimed:%Y-%m-%d}")
-    elif claimed > now + CLOCKS_DIFFER:
-        problems.append(f"no, signed in the future, on {claimed:%Y-%m-%d}")
-    elif not begin <= now <= end:
-        problems.append(
-            f"no longer, {span}; that it was signed on {claimed:%Y-%m-%d} is the signer's own"
-            " statement"
-        )
-    said = "" if claimed is None else f", signed on {claimed:%Y-%m-%d} as the signer states"
-    return answer(certificate_question(name), problems, f"yes, {span}{said}")
+        return failed(question, said("signing_time_missing"))
+    begin, end = certificate.not_valid_before, certificate.not_valid_after
+    span = {"begin": f"{begin:%Y-%m-%d}", "end": f"{end:%Y-%m-%d}"}
+    signed = f"{claimed:%Y-%m-%d}"
+    if not begin <= claimed <= end:
+        return failed(question, said("signed_outside_validity", **span, signed=signed))
+    if claimed > now + CLOCKS_DIFFER:
+        return failed(question, said("signed_in_future", signed=signed))
+    if not begin <= now <= end:
+        return failed(question, said("no_longer_in_force", **span, signed=signed))
+    return answer(question, [], said("in_force", **span, signed=signed))
 
 
-def _trusted(status: Any, certificate: Any, name: str, trust: Sequence[bytes] | None) -> Answer:
+def _trusted(
+    status: Status, certificate: Certificate, question: Question, trust: Sequence[bytes] | None
+) -> Answer:
     own = certificate.issuer == certificate.subject
-    issuer = "itself (self-signed)" if own else _readable(certificate.issuer)
-    said = f"{_readable(certificate.subject)}, issued by {issuer}"
-    question = trust_question(name)
+    names = {
+        "signer": _readable(certificate.subject),
+        "issuer": None if own else _readable(certificate.issuer),
+    }
     if trust is None:
-        return Answer(Standing.NOT_ASKED, question, f"{NO_ANCHOR}; {said}")
+        return not_asked(question, said("no_anchor", **names))
     if status.trusted:
-        return answer(question, [], f"yes, {said}")
+        return answer(question, [], said("trusted", **names))
     problem = status.trust_problem_indic
-    reason = f" ({problem.name.lower().replace('_', ' ')})" if problem is not None else ""
-    return failed(question, f"no, {said}: does not lead to the certificate given{reason}")
+    if problem is None:
+        return failed(question, said("untrusted", **names))
+    reason = problem.name.lower().replace("_", " ")
+    return failed(question, said("untrusted_because", reason=reason, **names))

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-Values = dict[str, Any]
+from posstats.contract.acceptance import Acceptance
+from posstats.contract.results import Results
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Steps:
     recompute
         (block folder, results as a pattern: settings and inputs) -> results.
     reassess
-        (results, profile files by name, acceptance as a pattern) -> acceptance values.
+        (results, profile files by name, acceptance as a pattern) -> acceptance.
     render_document
         (acceptance, results, user templates by name) -> HTML.
     numbers
@@ -26,8 +26,8 @@ class Steps:
         Versions that the pages depend on, as `made_with` reads them from a document.
     """
 
-    recompute: Callable[[Path, Values], Values]
-    reassess: Callable[[Values, Mapping[str, bytes], Values], Values]
-    render_document: Callable[[Values, Values, Mapping[str, bytes]], str]
+    recompute: Callable[[Path, Results], Results]
+    reassess: Callable[[Results, Mapping[str, bytes], Acceptance], Acceptance]
+    render_document: Callable[[Acceptance, Results, Mapping[str, bytes]], str]
     numbers: Mapping[str, str]
     layout: str

@@ -8,9 +8,11 @@ from collections.abc import Iterator
 
 import pikepdf
 
+from posstats.contract.notice import Notice
+
 from ..archive.file import ArchiveFile
 from ..archive.reading import open_pdf, written
-from .words import APPENDED, NOTHING_APPENDED, ONLY_SIGNATURES, Answer, answer
+from .answers import APPENDED, Answer, answer, said
 
 _CATALOG_ADDITIONS = {"/AcroForm", "/DSS", "/Extensions", "/Version"}
 _FORM_KEYS = {"/DA", "/DR", "/Fields", "/SigFlags"}
@@ -32,53 +34,59 @@ def appended(file: ArchiveFile, pdf: pikepdf.Pdf, n_signatures: int) -> Answer:
         If the first revision is no PDF of its own.
     """
     if len(file.ends) == 1 and file.ends[0] == len(file.data):
-        return answer(APPENDED, [], NOTHING_APPENDED)
+        return answer(APPENDED, [], said("nothing_appended"))
     first = open_pdf(file.first)
-    problems = ["its revisions are hidden"] if "/Prev" in first.trailer else []
+    problems = [said("revisions_hidden")] if "/Prev" in first.trailer else []
     problems += _changes(first, pdf)
     updates = len(file.ends) - 1
     if updates != n_signatures:
-        problems.append(f"{updates} updates, but {n_signatures} signatures")
+        problems.append(
+            said("updates_without_signatures", n_updates=updates, n_signatures=n_signatures)
+        )
     if file.ends[-1] != len(file.data):
-        problems.append("bytes behind its end")
-    return answer(APPENDED, problems, ONLY_SIGNATURES)
+        problems.append(said("bytes_behind_end"))
+    return answer(APPENDED, problems, said("only_signatures"))
 
 
-def _changes(first: pikepdf.Pdf, last: pikepdf.Pdf) -> Iterator[str]:
+def _changes(first: pikepdf.Pdf, last: pikepdf.Pdf) -> Iterator[Notice]:
     yield from _page_changes(first, last)
     for key in ("/Root", "/Info"):
         if first.trailer[key].objgen != last.trailer[key].objgen:
-            yield f"another {key} took the place of the first"
+            yield said("replaced", key=key)
             return
     fields = {field.objgen for field in _fields(last)}
     owners = _owners(first)
     for old in first.objects:
         new = last.get_object(old.objgen)
         if _content(old) != _content(new) and not _is_allowed(first, last, old, fields):
-            yield f"{owners.get(old.objgen, f'object {old.objgen[0]}')} was changed"
+            yield owners.get(old.objgen, said("object_changed", number=old.objgen[0]))
     yield from _form_problems(last)
 
 
-def _page_changes(first: pikepdf.Pdf, last: pikepdf.Pdf) -> Iterator[str]:
+def _page_changes(first: pikepdf.Pdf, last: pikepdf.Pdf) -> Iterator[Notice]:
     old = [page.obj.objgen for page in first.pages]
     new = [page.obj.objgen for page in last.pages]
-    yield from (f"page {n} was added" for n, page in enumerate(new, 1) if page not in old)
-    yield from (f"page {n} was taken out" for n, page in enumerate(old, 1) if page not in new)
+    yield from (said("page_added", number=n) for n, page in enumerate(new, 1) if page not in old)
+    yield from (
+        said("page_taken_out", number=n) for n, page in enumerate(old, 1) if page not in new
+    )
     if sorted(old) == sorted(new) and old != new:
-        yield "the order of the pages was changed"
+        yield said("pages_reordered")
 
 
-def _owners(pdf: pikepdf.Pdf) -> dict[tuple[int, int], str]:
-    """What the important objects are, in words."""
-    owners: dict[tuple[int, int], str] = {
-        pdf.Root.objgen: "the catalog",
-        pdf.trailer.Info.objgen: "the title or author",
-        pdf.Root.Metadata.objgen: "the metadata",
+def _owners(pdf: pikepdf.Pdf) -> dict[tuple[int, int], Notice]:
+    """What is to be said of a change to the important objects."""
+    owners: dict[tuple[int, int], Notice] = {
+        pdf.Root.objgen: said("catalog_changed"),
+        pdf.trailer.Info.objgen: said("title_changed"),
+        pdf.Root.Metadata.objgen: said("metadata_changed"),
     }
     for number, page in enumerate(pdf.pages, 1):
-        owners |= dict.fromkeys((page.obj.objgen, page.Contents.objgen), f"page {number}")
+        changed = said("page_changed", number=number)
+        owners |= dict.fromkeys((page.obj.objgen, page.Contents.objgen), changed)
     for each in pdf.Root.get("/AF", pikepdf.Array()):
-        owners |= dict.fromkeys((each.objgen, each.EF.F.objgen), f"the embedded file {each.UF}")
+        changed = said("embedded_file_changed", file=str(each.UF))
+        owners |= dict.fromkeys((each.objgen, each.EF.F.objgen), changed)
     return owners
 
 
@@ -130,16 +138,16 @@ def _fields(pdf: pikepdf.Pdf) -> list[pikepdf.Object]:
     return list(form.get("/Fields", pikepdf.Array()))
 
 
-def _form_problems(pdf: pikepdf.Pdf) -> Iterator[str]:
+def _form_problems(pdf: pikepdf.Pdf) -> Iterator[Notice]:
     """Fields that are more than signatures, or draw on a page."""
     others = set(pdf.Root.get("/AcroForm", pikepdf.Dictionary()).keys()) - _FORM_KEYS
-    yield from (f"a form with {key}" for key in sorted(others))
+    yield from (said("form_entry", key=key) for key in sorted(others))
     for field in _fields(pdf):
-        name = field.get("/T", "")
+        name = str(field.get("/T", ""))
         if field.get("/FT") != pikepdf.Name.Sig or _ACTIONS & set(field.keys()):
-            yield f"the form field {name}, which is more than a signature"
+            yield said("form_field", field=name)
         elif not _is_invisible(field):
-            yield f"the signature {name} draws on a page and may hide what is written there"
+            yield said("visible_signature", field=name)
 
 
 def _is_invisible(field: pikepdf.Object) -> bool:

@@ -1,113 +1,66 @@
-"""What `posstats verify` says: its questions and the words of its answers. Plain English."""
+"""What `posstats verify` prints: a line an answer, in the words of the catalogue."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
+from posstats.contract.notice import Notice, Value
 
-SHOWN = 5
+from ..document.catalogue import catalogue
+from ..document.letters import width
+from ..document.words import Words
+from .answers import Answer, Question
 
-
-class Standing(StrEnum):
-    """How a question is answered; only FAIL makes the command fail."""
-
-    PASS = "PASS"  # noqa: S105 - no password
-    FAIL = "FAIL"
-    NOT_ASKED = "NOT ASKED"
-    NOT_SIGNED = "NOT SIGNED"
+DOMAINS = ("document", "verification")
+SHOWN = 5  # parts of an answer
+STANDING_WIDTH = 10
 
 
-@dataclass(frozen=True)
-class Answer:
-    """One question with its answer."""
-
-    standing: Standing
-    question: str
-    text: str
-
-    @property
-    def line(self) -> str:
-        """For the terminal: whatever a document says cannot steer it."""
-        text = f"{self.question}: {self.text}"
-        return f"{self.standing:<10}  " + "".join(c if c.isprintable() else "\ufffd" for c in text)
+def words_of(language: str) -> Words:
+    """The words of a language."""
+    return Words(catalogue(language, *DOMAINS))
 
 
-def answer(question: str, problems: Iterable[str], holds: str) -> Answer:
-    """PASS with the words `holds` if there are no problems, FAIL with the first few otherwise."""
-    found = list(problems)
-    if not found:
-        return Answer(Standing.PASS, question, holds)
-    return Answer(Standing.FAIL, question, listed(found))
-
-
-def failed(question: str, reason: object) -> Answer:
-    """FAIL with a reason."""
-    return Answer(Standing.FAIL, question, str(reason))
-
-
-def listed(items: Sequence[str]) -> str:
-    """The first few items in a row."""
-    hidden = len(items) - SHOWN
-    return "; ".join(items[:SHOWN]) + (f"; and {hidden} more" if hidden > 0 else "")
-
-
-READABLE = "is it an acceptance document of posstats"
-SIGNED = "is it signed"
-TRUSTED = "is the signer trusted"
-APPENDED = "is nothing appended to it but signatures"
-FILES = "are the embedded files complete and as listed"
-ASSESSMENT = "does the assessment follow from the embedded results and profile"
-PAGES = "do the pages say what the embedded data say"
-INPUTS = "are the input files those that the document names"
-RECOMPUTED = "does recomputing from the input files give the same results"
-
-UNSIGNED = "no; who made it, and that it was never rewritten as a whole, cannot be known"
-UNSIGNED_TRUST = "nobody signed"
-NO_ANCHOR = "no certificate to trust was given (--trust)"
-NO_INPUTS = "no input files were given (--inputs)"
-NOTHING_APPENDED = "yes, nothing is appended"
-ONLY_SIGNATURES = "yes, only signatures"
-SAME_BYTES = "yes, made again from the data they have the same bytes"
-SAME_DECODED = "yes, made again from the data they hold the same, packed differently"
-NOT_HERE = "not with the versions at hand"
-
-
-def readable(document_id: object, verdict: object) -> str:
-    """What the document calls itself."""
-    return f"yes, {document_id}, verdict {verdict}"
-
-
-def intact_question(name: str) -> str:
-    """Whether what was signed is unchanged."""
-    return f"is {name} intact"
-
-
-def certificate_question(name: str) -> str:
-    """Whether the signer's certificate was in force."""
-    return f"is the certificate of {name} in force"
-
-
-def trust_question(name: str) -> str:
-    """Whether somebody the user trusts vouches for the signer."""
-    return f"is the signer of {name} trusted"
-
-
-def own_templates(names: Sequence[str]) -> str:
-    """Why pages of unknown templates are not believed."""
-    return (
-        f"they are laid out by templates of the document's own ({listed(names)}), which can say or"
-        " hide anything: give the folder where you know them from (--templates), or trust the data"
-        " alone"
+def line(words: Words, answer: Answer) -> str:
+    """An answer for the terminal: whatever a document says cannot steer it."""
+    standing = words.of("standing", answer.standing)
+    text = words.text(
+        "answer.line", question=asked(words, answer.question), text=told(words, answer)
     )
+    padding = " " * max(0, STANDING_WIDTH - width(standing))
+    seen = "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+    return f"{standing}{padding}  {seen}"
 
 
-def same_text(other: str) -> str:
-    """Pages of other versions: what was compared, and what was not."""
-    return (
-        f"yes, but the text of the pages alone was compared, not their drawings: {other}; with the"
-        " same versions all is compared"
-    )
+def asked(words: Words, question: Question) -> str:
+    """A question in words."""
+    number = question.signature
+    signature = (
+        words.text("signature.only") if number is None
+        else words.text("signature.numbered", number=str(number))
+    )  # fmt: skip
+    return words.of("question", question.code, signature=signature)
 
 
-def other_versions(made: str, here: str) -> str:
-    """Why pages cannot be compared byte by byte."""
-    return f"made with {made}, compared with {here}"
+def told(words: Words, answer: Answer) -> str:
+    """An answer in words: its first few parts."""
+    parts = [_part(words, each) for each in answer.said[:SHOWN]]
+    hidden = len(answer.said) - SHOWN
+    if hidden > 0:
+        parts.append(words.text("answer.more", n=str(hidden)))
+    text = words.text("answer.between").join(parts)
+    return words.text("answer.hedged", text=text) if answer.hedged else text
+
+
+def _part(words: Words, part: Notice) -> str:
+    values = {name: _put(words, name, value) for name, value in part.values.items()}
+    if isinstance(part.values.get("n"), int):
+        return words.catalogue.plural(f"said.{part.code}", int(values["n"]), **values)
+    return words.of("said", part.code, **values)
+
+
+def _put(words: Words, name: str, value: Value) -> str:
+    """A value as it is; verdicts are words of the catalogue, and so is an issuer that is none."""
+    if name == "verdict":
+        return words.known("verdict_said", str(value))
+    if name == "issuer" and value is None:
+        return words.text("signature.own_issuer")
+    if isinstance(value, tuple):
+        return words.text("answer.between").join(map(str, value))
+    return str(value)

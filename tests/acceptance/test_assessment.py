@@ -6,16 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from acceptance_evidence import (
-    decision,
     evidence_of,
-    of_orientations,
     regression_rows,
     residual_rows,
     results_of,
+    selection_rows,
 )
 from hypothesis import given
 from hypothesis import strategies as st
-from report_results import with_rows
 
 from posstats.acceptance.assessment import assess
 from posstats.acceptance.evidence import best_orientation, evidence
@@ -31,6 +29,8 @@ from posstats.errors import PosstatsError
 
 # horizontal 5, 0, 5, vertical 1, 2, 5, means 1, 3, 2
 HAND = [[3.0, 4.0, -1.0], [0.0, 0.0, 2.0], [0.0, 5.0, 5.0]]
+BUNDLE = Bundle(sigma0=1.1, dof=40.0, p_value=0.3, image_rms_px=0.21, sigma_image_px=0.2,
+                n_rays=400, n_rejected_rays=0, n_control_points=0)  # fmt: skip
 TEN_CM = Product(class_h_m=0.10, class_v_m=0.10)
 
 
@@ -112,12 +112,7 @@ def test_the_poorest_quadrant_counts():
 
 
 def test_values_of_the_bundle_belong_to_the_orientation_of_the_bundle():
-    bundle = {
-        "bundle": Bundle(
-            sigma0=1.1, dof=10.0, p_value=0.5, image_rms_px=0.21, sigma_image_px=0.2,
-            n_rays=100, n_rejected_rays=0, n_control_points=0,
-        )
-    }  # fmt: skip
+    bundle = {"bundle": BUNDLE}
     orientations = ("pos", "selected", "bundle")
     asked = {"orientations": orientations, **bundle}
     assert found("sigma0", orientation="bundle", **asked) == 1.1
@@ -130,7 +125,7 @@ def test_values_of_the_bundle_belong_to_the_orientation_of_the_bundle():
 
 def test_drifts_that_were_taken_off_are_not_tested_and_holm_counts_the_others():
     assert found("remaining_drift_p", orientation="pos") == pytest.approx(3e-6)
-    everything = tuple(decision(angle, "linear") for angle in ("omega", "phi", "kappa"))
+    everything = selection_rows(dict.fromkeys(("omega", "phi", "kappa"), "linear"))
     assert found("remaining_drift_p", selection=everything) == 1.0
     # without a covariance of the errors there is no GLS, and OLS is all there is
     ols = regression_rows({"omega": None, "phi": None, "kappa": None})
@@ -140,9 +135,9 @@ def test_drifts_that_were_taken_off_are_not_tested_and_holm_counts_the_others():
 
 
 def test_the_survey_of_the_contract_stands_in_where_the_block_states_none():
-    rows = residual_rows(HAND, sigma_xy_m=None, sigma_z_m=None)
-    rows = (replace(rows[0], survey_sigma_xy_m=0.03), *rows[1:])
-    with pytest.raises(Unavailable, match="survey accuracy not stated"):
+    first, *others = residual_rows(HAND, sigma_xy_m=None, sigma_z_m=None)
+    rows = (replace(first, survey_sigma_xy_m=0.03), *others)
+    with pytest.raises(Unavailable, match="accuracy not stated"):
         found("survey_h", check_point_residuals=rows)
     stated = Product(survey_sigma_h_m=0.01, survey_sigma_v_m=0.05)
     # the larger of both counts
@@ -152,9 +147,9 @@ def test_the_survey_of_the_contract_stands_in_where_the_block_states_none():
 
 
 def test_points_that_could_not_be_measured_count_in_their_share_alone():
-    rows = residual_rows(HAND)
-    lost = {"status": "fewer than two rays", "dx_m": None, "dy_m": None, "dz_m": None}
-    rows = (replace(rows[0], **lost), *rows[1:])
+    first, *others = residual_rows(HAND)
+    lost = replace(first, status="fewer than two rays", dx_m=None, dy_m=None, dz_m=None)
+    rows = (lost, *others)
     assert found("measured_share", check_point_residuals=rows) == pytest.approx(2 / 3)
     assert found("mean_error_v", check_point_residuals=rows) == pytest.approx(3.5)
 
@@ -179,16 +174,12 @@ def test_every_quantity_that_a_profile_may_name_can_be_found():
 
 
 def test_the_orientation_is_the_best_that_the_results_hold_whatever_its_outcome():
-    worse = with_rows(
-        results_of(HAND, ("pos", "selected", "bundle")),
-        "check_point_residuals",
-        lambda row: replace(row, dx_m=1e3) if row.orientation == "bundle" else row,
-    )
+    rows = residual_rows(HAND, "pos") + residual_rows(1e3 * np.array(HAND), "bundle")
+    worse = results_of(HAND, ("pos", "selected", "bundle"), check_point_residuals=rows)
     assert best_orientation(worse) == "bundle"
     assert best_orientation(results_of(HAND)) == "selected"
-    lacking = replace(worse, check_points=of_orientations("selected"))
-    with pytest.raises(PosstatsError, match="hold no orientation adjusted: choose one of selected"):
-        evidence(lacking, "adjusted", Product())
+    with pytest.raises(PosstatsError, match="one of selected"):
+        evidence(results_of(HAND, ("selected",)), "adjusted", Product())
 
 
 def verdict_of(*requirements, difference_m=HAND, product=None):

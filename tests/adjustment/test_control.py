@@ -69,12 +69,12 @@ def test_points_of_fewer_than_two_images_are_not_chosen(block):
     hidden = replace(block, tie_points=ties.subset(keep))
     assert not measured_points(hidden, hidden.ground_points)[4]
     assert chosen(hidden, "centre") != ["C5"]
-    with pytest.raises(PosstatsError, match="'C5' is not measured in two images"):
+    with pytest.raises(PosstatsError, match="'C5' is not measured"):
         chosen_control(hidden, ("C5",))
 
 
 def test_an_unknown_id_is_refused_with_the_nearest_known_one(block):
-    with pytest.raises(PosstatsError, match=r"no ground point 'C55'; the nearest id is 'C5'"):
+    with pytest.raises(PosstatsError, match=r"no ground point 'C55'; the nearest id"):
         chosen_control(block, ("C1", "C55"))
 
 

@@ -8,6 +8,7 @@ from dense_bundle import noisy_problem
 
 from posstats.adjustment.defects import defects, weak_parameters
 from posstats.adjustment.significance import parameter_tests
+from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.errors import UndeterminedError
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import (
@@ -21,7 +22,10 @@ from posstats.numerics.bundle.parameters import (
     drift_parameters,
 )
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
+from posstats.reports.adjustment.wording import not_determined
+from posstats.reports.adjustment.words import words_in
 
+ENGLISH = words_in("en")
 STRIPS, BLOCK = ("s0", "s1"), ("block",)
 GNSS, IMU = "sigma_antenna_m", "sigma_angles_rad"
 
@@ -63,43 +67,45 @@ def weak(problem):
 
 SINGULAR = {
     "no datum": (without(noisy_problem(n_control=0), GNSS, IMU),
-                 "no control and no POS observation", noisy_problem(n_control=0)),
+                 "datum", noisy_problem(n_control=0)),
     "POS of no use": (far_too_weak(noisy_problem(n_control=0)),
-                      "no control and no POS observation", noisy_problem(n_control=0)),
+                      "datum", noisy_problem(n_control=0)),
     "two points": (without(noisy_problem(n_control=2), GNSS, IMU),
-                   "2 control points and no POS", without(noisy_problem(n_control=3), GNSS, IMU)),
+                   "datum", without(noisy_problem(n_control=3), GNSS, IMU)),
     "angles alone": (without(noisy_problem(n_control=0), GNSS),
-                     "neither position nor scale", without(noisy_problem(n_control=2), GNSS)),
+                     "datum_angles_alone", without(noisy_problem(n_control=2), GNSS)),
     "gnss shift": (noisy_problem(drift_parameters(GNSS_SHIFTS, BLOCK), n_control=0),
-                   "moves along with its antenna",
+                   "gnss_of_block",
                    noisy_problem(drift_parameters(GNSS_SHIFTS, BLOCK), n_control=1)),
     "gnss of strips": (noisy_problem(drift_parameters(GNSS_SHIFTS, STRIPS), n_control=0),
-                       "tie points alone hold the strips",
+                       "gnss_of_strips",
                        noisy_problem(drift_parameters(GNSS_SHIFTS, STRIPS, 0.3), n_control=0)),
     "boresight and IMU shift": (
         noisy_problem((*drift_parameters(IMU_SHIFTS, BLOCK), *free(*BORESIGHT))),
-        "turn the observed angles alike",
+        "attitude_twice",
         noisy_problem((*drift_parameters(IMU_SHIFTS, BLOCK), *free(*BORESIGHT[:2])))),
     "lever arm without rotation": (
         noisy_problem((*drift_parameters(GNSS_SHIFTS, BLOCK), *free(*LEVER_ARM)), tilt_rad=0.0),
-        "antenna positions alike", noisy_problem(free(*LEVER_ARM))),
+        "position_twice", noisy_problem(free(*LEVER_ARM))),
     "Bauer and Brown": (noisy_problem(free("camera_c", "bauer_s1", "brown_k1")),
-                        "combinations of each other", noisy_problem(free("camera_c", "bauer_s1"))),
+                        "radial", noisy_problem(free("camera_c", "bauer_s1"))),
     "block and strips": (noisy_problem(drift_parameters(GNSS_SHIFTS, (*BLOCK, *STRIPS))),
-                         "whose sum alone counts",
+                         "twice",
                          noisy_problem(drift_parameters(GNSS_SHIFTS, STRIPS))),
     "nothing observed": (without(noisy_problem(drift_parameters(IMU_SHIFTS, BLOCK)), IMU),
-                         "POS observes nothing", without(noisy_problem(), IMU)),
+                         "unobserved", without(noisy_problem(), IMU)),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", SINGULAR)
 def test_a_singular_block_is_explained_and_the_remedy_makes_it_regular(case):
-    problem, reason, remedied = SINGULAR[case]
+    problem, code, remedied = SINGULAR[case]
     (defect,) = explained(problem)
-    assert reason in defect.sentence
-    for at in defect.parameters[:6]:
-        assert problem.parameters[at].name in defect.sentence
+    assert defect.reason.code == f"open_{code}"
+    assert defect.reason.values == {"n_control": len(problem.control.point)}
+    assert defect.remedy.code == f"helps_{code}"
+    assert set(defect.parameters) <= set(problem.parameters)
+    assert bool(defect.parameters) == bool(problem.parameters)
     assert np.isfinite(adjust(remedied).sigma0)
 
 
@@ -112,30 +118,30 @@ SHIFTS_AND_DRIFTS = (*GNSS_SHIFTS, *GNSS_DRIFTS)
 WEAK = {
     "free drifts with one point": (
         noisy_problem(drift_parameters(SHIFTS_AND_DRIFTS, STRIPS), n_control=1),
-        "with one control point, tie points alone hold the strips",
+        "gnss_of_strips",
         noisy_problem(drift_parameters(SHIFTS_AND_DRIFTS, STRIPS, 0.3), n_control=1)),
     "roll of a strip": (
         noisy_problem(drift_parameters(IMU_SHIFTS, BLOCK), n_control=0, n_strips=1),
-        "about the line of flight",
+        "imu",
         noisy_problem(drift_parameters(IMU_SHIFTS, BLOCK), n_control=0, n_strips=2)),
     "principal point": (flat_self_calibration(n_strips=1, tilt_rad=0.0),
-                        "looks like a small rotation", flat_self_calibration(n_strips=2)),
+                        "point_and_boresight", flat_self_calibration(n_strips=2)),
     "principal distance": (
         noisy_problem(free("camera_c"), n_control=0, relief_m=0.0),
-        "the flying height have the same effect",
+        "distance",
         noisy_problem(free("camera_c"), n_control=10, relief_m=300.0, sigma_position_m=0.02)),
     "height and lever arm": (noisy_problem(free("gnss_z_shift", "lever_arm_w")),
-                             "antenna positions alike", noisy_problem(free("gnss_z_shift"))),
+                             "position_twice", noisy_problem(free("gnss_z_shift"))),
     "height and distance": (noisy_problem(free("gnss_z_shift", "camera_c"), relief_m=0.0),
-                            "as a shift of the antenna heights",
+                            "scale_and_height",
                             noisy_problem(free("gnss_z_shift"), relief_m=0.0)),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WEAK)
 def test_a_weak_block_is_explained_and_the_remedy_strengthens_it(case):
-    problem, reason, remedied = WEAK[case]
-    assert reason in " ".join(defect.sentence for defect in weak(problem))
+    problem, code, remedied = WEAK[case]
+    assert f"open_{code}" in [defect.reason.code for defect in weak(problem)]
     assert weak(remedied) == ()
 
 
@@ -150,9 +156,11 @@ EVERY = [
 def test_every_parameter_has_an_explanation_of_its_own(name, scope):
     problem = replace(noisy_problem(), parameters=(CommonParameter(name, scope),))
     (defect,) = defects(problem, [], UndeterminedError([], [0]))
-    assert defect.parameters == (0,)
-    assert defect.sentence.startswith(name)
-    assert ". What helps: " in defect.sentence
+    assert defect.parameters == problem.parameters
+    sentence = not_determined(UndeterminedBlockError([defect], []))
+    assert sentence.startswith(name)
+    assert ENGLISH.notice(defect.reason) in sentence
+    assert ENGLISH.notice(defect.remedy) in sentence
 
 
 def test_a_camera_without_rays_is_named():
@@ -166,7 +174,8 @@ def test_a_camera_without_rays_is_named():
         parameters=(CommonParameter("camera_c", "spare"),),
     )
     (defect,) = explained(problem)
-    assert defect.sentence.startswith("camera_c of spare is not determined: no ray is measured")
+    assert defect.reason.code == "open_unseen"
+    assert not_determined(UndeterminedBlockError([defect], [])).startswith("camera_c of spare is")
 
 
 def test_an_image_without_rays_and_pos_is_named():
@@ -177,6 +186,15 @@ def test_an_image_without_rays_and_pos_is_named():
         **{name: getattr(problem, name)[kept] for name in ("point", "image", "xy_px", "sigma_px")},
     )
     (defect,) = explained(problem)
-    assert defect.images == (2,)
-    assert defect.sentence.startswith("The orientation of i2 is not determined: ")
-    assert "(0 in" in defect.sentence
+    assert defect.images == ("i2",)
+    assert defect.reason.code == "open_images"
+    assert defect.reason.values == {"n_rays": 0}
+    assert "i2" in not_determined(UndeterminedBlockError([defect], []))
+
+
+def test_a_datum_defect_is_one_of_all_images():
+    problem = without(noisy_problem(n_control=0), GNSS, IMU)
+    (defect,) = explained(problem)
+    assert (defect.parameters, defect.images) == ((), ())
+    sentence = not_determined(UndeterminedBlockError([defect], []))
+    assert sentence.startswith(ENGLISH.text("defect.all_images"))

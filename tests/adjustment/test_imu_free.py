@@ -15,7 +15,7 @@ from small_scenario import OMEGA_DRIFT_RAD_PER_S, scenario, small_block
 from posstats.adjustment.imu_free import MAX_IMAGES, ImuFreeBundle, adjust_imu_free
 from posstats.analysis.angle_errors import AngleErrors, bundle_errors, coplanarity_errors
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block
 from posstats.contract.files import as_values
@@ -25,6 +25,7 @@ from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_fr
 from posstats.reports.block import document as block_document
 from posstats.reports.commands.cli import cli
 from posstats.reports.pages import html
+from posstats.settings import Settings
 
 CONTROL = {"n": 4, "distribution": "corners", "image_px": 0.2, "ground_m": 0.05}
 ONE_STRIP = scenario()["flight"] | {"n_strips": 1}
@@ -134,8 +135,8 @@ def test_control_points_fix_the_roll_of_a_single_strip():
     gained = (1.05 * loose.covariance_rad2 - fixed.covariance_rad2).reshape(size, size)
     scale = loose.sigma_rad.ravel()
     assert np.linalg.eigvalsh(gained / np.multiply.outer(scale, scale)).min() > 0.0
-    assert loose.observability[0].unobservable == ("rotation about the base axis",)
-    assert fixed.observability[0].unobservable == ()
+    assert loose.observability[0].rotations == ("about_base_axis",)
+    assert fixed.observability[0].rotations == ()
     assert fixed.used.all()
 
 
@@ -143,7 +144,7 @@ def test_an_open_roll_is_named_and_its_images_take_no_part():
     layout = Layout(n_strips=1, jitter_m=0.0, relief_m=0.0)
     block = observed_block(true_block(layout), np.random.default_rng(8))
     _, errors = adjusted(block)
-    assert errors.observability[0].unobservable == ("rotation about the base axis",)
+    assert errors.observability[0].rotations == ("about_base_axis",)
     assert not errors.used.any()
     assert errors.observability[1].images == tuple(block.orientations.image)
 
@@ -227,9 +228,9 @@ def test_a_wrong_control_point_is_named_and_costs_no_rays():
     position[wrong, 2] += 5.0
     right, good = adjusted(block)
     bundle, errors = adjusted(replace(block, ground_points=replace(surveyed, position_m=position)))
-    assert good.warnings == ()
-    (warning,) = (each for each in errors.warnings if each.startswith("control points"))
-    assert surveyed.point[wrong] in warning
+    assert good.notices == ()
+    (notice,) = (each for each in errors.notices if each.code == "contradicted_control")
+    assert notice.values["ids"] == (surveyed.point[wrong],)
     assert bundle.n_rejected == right.n_rejected
 
 
@@ -238,8 +239,8 @@ def test_a_wrong_position_is_named_and_costs_no_rays(block, analysis):
     position = pos.position_m.copy()
     position[12, 0] += 5.0
     bundle, errors = adjusted(replace(block, orientations=replace(pos, position_m=position)))
-    assert errors.warnings[-1].startswith("POS positions that the rest of the block contradicts")
-    assert pos.image[12] in errors.warnings[-1]
+    assert errors.notices[-1].code == "contradicted_positions"
+    assert pos.image[12] in errors.notices[-1].values["ids"]
     assert bundle.n_rejected <= analysis.bundle.n_rejected + 1
 
 
@@ -253,7 +254,7 @@ def test_an_image_without_rays_is_listed_and_has_no_error(block):
     others = np.arange(len(errors)) != 3
     assert errors.used[others].all()
     assert np.isfinite(errors.covariance_rad2[others][:, :, others]).all()
-    assert block.orientations.image[3] in errors.warnings[0]
+    assert block.orientations.image[3] in errors.notices[0].values["ids"]
 
 
 def test_blocks_that_are_too_large_are_refused():

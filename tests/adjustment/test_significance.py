@@ -10,7 +10,6 @@ from scipy import stats
 from posstats.adjustment.significance import (
     correlations,
     critical_value,
-    global_test,
     largest_effects,
     local_tests,
     noncentrality,
@@ -19,6 +18,7 @@ from posstats.adjustment.significance import (
 from posstats.adjustment.weights import GROUPS, rescaled
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import GNSS_SHIFTS, IMU_SHIFTS, CommonParameter
+from posstats.statistics.global_test import global_test
 
 SHIFTS = (
     *(CommonParameter(name) for name in GNSS_SHIFTS),
@@ -88,7 +88,7 @@ def test_parameter_tests_are_those_of_dense_algebra(solved):
         assert test.significant == (test.p < 0.05)
         assert test.determined
     chi2 = stats.chi2(dof).cdf(sigma0**2 * dof)
-    whole = global_test(result)
+    whole = global_test(result.square_sum, result.dof)
     np.testing.assert_allclose(
         [whole.sigma0, whole.dof, whole.p], [sigma0, dof, 2 * min(chi2, 1 - chi2)], rtol=1e-6
     )
@@ -191,7 +191,7 @@ def test_rates_of_rejection_without_blunders_are_those_stated():
     for seed in range(60):
         problem = noisy_problem(seed=seed)
         result = adjust(problem)
-        p.append(global_test(result).p)
+        p.append(global_test(result.square_sum, result.dof).p)
         for group, test in local_tests(problem, result).items():
             w = test.w[np.isfinite(test.w)]
             beyond[group].append(np.mean(np.abs(w) > critical_value(0.05)))

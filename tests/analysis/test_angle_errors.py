@@ -13,8 +13,10 @@ from posstats.analysis.angle_errors import adjusted_errors, coplanarity_errors, 
 from posstats.analysis.regression import fit_drift
 from posstats.block.image_pairs import stereo_models
 from posstats.block.model import Block, GroundPoints
+from posstats.contract.notice import listing
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block
+from posstats.geometry.coplanarity.point_pairs import SHORTEST_BASE
 from posstats.numerics.kernels.rotation import (
     angles_from_rotation,
     rotation_from_angles,
@@ -222,10 +224,10 @@ def test_roll_of_a_perfectly_straight_strip_is_reported_undetermined():
     truth = true_block(Layout(n_strips=1, jitter_m=0.0, n_points=200))
     found = errors_of(observed_block(truth, np.random.default_rng(10)))
     block, strip = found.observability
-    assert block.unobservable == strip.unobservable == ("rotation about the base axis",)
+    assert block.rotations == strip.rotations == ("about_base_axis",)
     assert strip.images == tuple(truth.orientations.image)
     assert not found.used.any()
-    assert "undetermined" in found.warnings[0]
+    assert found.notices[0].code == "angles_loose"
 
 
 def test_roll_that_a_crooked_strip_barely_determines_is_open_as_that_of_its_images():
@@ -234,31 +236,29 @@ def test_roll_that_a_crooked_strip_barely_determines_is_open_as_that_of_its_imag
     found = errors_of(observed_block(truth, np.random.default_rng(0)))
     limit = np.radians(0.1)
     assert np.all((limit < found.sigma_rad[:, 1]) & (found.sigma_rad[:, 1] < 1.3 * limit))
-    assert found.observability[0].unobservable == ("rotation about the base axis",)
+    assert found.observability[0].rotations == ("about_base_axis",)
 
 
 def test_the_base_axis_of_a_wide_block_is_that_of_its_strips():
     """Strips 5 km apart and 1.2 km long, heading north-east, without common points."""
     truth = true_block(Layout(strip_distance_m=5000.0, n_points=1500, heading_rad=0.8))
     found = errors_of(observed_block(truth, np.random.default_rng(0)))
-    assert [each.unobservable for each in found.observability] == [
-        ("rotation about the base axis",)
-    ] * 3
+    assert [each.rotations for each in found.observability] == [("about_base_axis",)] * 3
 
 
 def test_pairs_with_too_short_a_base_are_left_out_and_counted():
     """Two strips flown over the same places within centimetres: five bases of no direction."""
     truth = true_block(Layout(strip_distance_m=0.0, jitter_m=0.02))
     found = errors_of(observed_block(truth, np.random.default_rng(0)))
-    assert "5 of 33 pairs of images left out" in found.warnings[0]
+    assert found.notices[0].values == {"n": 5, "n_pairs": 33, "n_sigmas": SHORTEST_BASE}
     assert np.isfinite(found.error_rad).all()
 
 
 def test_side_overlap_determines_everything():
     found = errors_of(observed_block(true_block(SIDE_OVERLAP), np.random.default_rng(10)))
-    assert all(not each.unobservable and not each.images for each in found.observability)
+    assert all(not each.rotations and not each.images for each in found.observability)
     assert [each.scope for each in found.observability] == ["block", "s0", "s1"]
-    assert found.warnings == ()
+    assert found.notices == ()
 
 
 def test_an_image_without_tie_points_is_missing_not_zero():
@@ -270,7 +270,7 @@ def test_an_image_without_tie_points_is_missing_not_zero():
     assert np.isnan(found.sigma_rad[9]).all()
     assert not found.used[9]
     assert np.isfinite(found.error_rad[:9]).all()
-    assert found.warnings == ("no tie points in common with another image (1 of the images): i009",)
+    assert found.notices == listing("images_untied", ["i009"])
     assert np.isnan(in_camera_frame(found, alone.orientations).error_rad[9]).all()
 
 
@@ -290,7 +290,7 @@ def test_adjusted_errors_are_wrapped_differences_and_missing_ones_are_named():
     assert found.error_rad[4, 2] == pytest.approx(1e-3)
     assert np.isnan(found.error_rad[3]).all()
     assert not found.used[3]
-    assert "i003" in found.warnings[0]
+    assert found.notices == listing("no_adjusted_orientation", ["i003"])
     assert np.isnan(found.sigma_rad).all()
     with pytest.raises(GeometryError, match=r"adjusted\.csv"):
         adjusted_errors(block)
@@ -315,11 +315,8 @@ def test_one_badly_tied_image_is_listed_without_calling_its_strip_unobservable()
     found = errors_of(replace(block, tie_points=ties.subset(keep)))
     scope, _, strip = found.observability
     assert scope.images == strip.images == ("i009",)
-    assert found.warnings == (
-        "angles undetermined, fewer than 6 tie points in common with other images"
-        " (1 of the images): i009",
-    )
-    assert scope.unobservable == strip.unobservable == ()
+    assert found.notices == listing("angles_of_few_points", ["i009"], n_needed=6)
+    assert scope.rotations == strip.rotations == ()
     assert found.used[:9].all()
     assert np.isfinite(found.error_rad[9]).all()
 

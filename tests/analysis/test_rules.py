@@ -7,8 +7,10 @@ import pytest
 from statsmodels.stats.multitest import multipletests
 
 from posstats.analysis.angle_errors import AngleErrors
+from posstats.analysis.out_of_sample import LEAVE_STRIP_OUT
 from posstats.analysis.regression import regress
 from posstats.analysis.rules import RuleFormatError, decide, load_rules
+from posstats.contract.notice import Notice
 from posstats.errors import BlockFormatError, PosstatsError
 
 N_STRIPS, PER_STRIP = 5, 20
@@ -38,7 +40,7 @@ def angle_errors(constant=(0, 0, 0), drift=(0, 0, 0), noise=1e-5, seed=1, known=
 class FakeParallax:
     raw_px: float
     corrected_px: float
-    method: str = "leaving one strip out"
+    method: str = LEAVE_STRIP_OUT
 
 
 def saving(shares):
@@ -53,6 +55,10 @@ def saving(shares):
     return out_of_sample
 
 
+def codes(decision):
+    return [each.code for each in decision.notices]
+
+
 def forms(decisions):
     return [decision.form for decision in decisions]
 
@@ -63,10 +69,17 @@ def test_paper_corrects_a_clear_line_only():
     assert forms(decisions) == ["linear", "none", "none"]
     assert [d.angle for d in decisions] == ["omega", "phi", "kappa"]
     assert decisions[0].correct
-    assert "p < 0.001" in decisions[0].reason
-    assert "reaches 0.8" in decisions[0].reason
-    assert "not significant" in decisions[1].reason
-    assert "is below 0.8" in decisions[2].reason
+    assert [codes(each) for each in decisions] == [
+        ["drift_explains"], ["drift_explains_little"], ["drift_explains_little"]
+    ]  # fmt: skip
+    (drift,) = decisions[0].notices
+    line = regressions[0].ols
+    assert drift.values == {
+        "significance": "significant", "slope_rad_per_s": line.slope,
+        "slope_se_rad_per_s": line.slope_se, "p": line.f_pvalue, "alpha": 0.05,
+        "r_squared": line.rsquared, "min_r_squared": 0.8,
+    }  # fmt: skip
+    assert decisions[1].notices[0].values["significance"] == "not_significant"
 
 
 def test_paper_wants_both_significance_and_fit():
@@ -82,7 +95,11 @@ def test_strict_takes_line_or_constant_by_nested_tests():
         regressions, load_rules("strict"), out_of_sample=saving({"omega": 0.5, "phi": 0.5})
     )
     assert forms(decisions) == ["linear", "constant", "none"]
-    assert "50.0% less mean parallax out of sample (leaving one strip out)" in decisions[0].reason
+    assert codes(decisions[0]) == ["drift", "less_parallax_out_of_sample"]
+    assert codes(decisions[1]) == ["drift", "constant", "less_parallax_out_of_sample"]
+    tested = decisions[0].notices[1].values
+    assert tested["change_share"] == pytest.approx(0.5)
+    assert (tested["out_of_sample"], tested["min_gain_share"]) == (LEAVE_STRIP_OUT, 0.05)
     assert {d.fit for d in decisions} == {"gls"}
 
 
@@ -92,8 +109,10 @@ def test_strict_refuses_what_saves_less_than_five_per_cent():
         regressions, load_rules("strict"), out_of_sample=saving({"omega": 0.04, "phi": -0.2})
     )
     assert forms(decisions) == ["none", "none", "none"]
-    assert "4.0% less" in decisions[0].reason
-    assert "20.0% more" in decisions[1].reason
+    less, more = (each.notices[-1] for each in decisions[:2])
+    assert (less.code, more.code) == ("less_parallax_out_of_sample", "more_parallax_out_of_sample")
+    assert less.values["change_share"] == pytest.approx(0.04)
+    assert more.values["change_share"] == pytest.approx(0.2)
 
 
 def test_strict_judges_a_small_angle_after_the_large_one():
@@ -111,12 +130,12 @@ def test_strict_judges_a_small_angle_after_the_large_one():
 
 def test_strict_says_when_nothing_can_be_tested():
     def untestable(decisions):
-        return FakeParallax(np.nan, np.nan, "one short strip")
+        return FakeParallax(np.nan, np.nan)
 
     regressions = regress(angle_errors(drift=(5e-7, 0, 0)))
     first = decide(regressions, load_rules("strict"), out_of_sample=untestable)[0]
     assert not first.correct
-    assert "not testable out of sample (one short strip)" in first.reason
+    assert codes(first)[-1] == "no_test_out_of_sample"
 
 
 def test_strict_needs_the_models():
@@ -129,7 +148,7 @@ def test_errors_without_covariance_are_judged_by_their_scatter():
     assert not regressions[0].covariance_known
     first = decide(regressions, load_rules("strict"), out_of_sample=saving({"omega": 0.5}))[0]
     assert first.form == "linear"
-    assert "without covariance" in first.reason
+    assert "no_covariance" in codes(first)
 
 
 def test_holm_makes_a_weak_finding_insignificant():
@@ -197,10 +216,11 @@ def test_short_strips_have_a_reason_instead_of_a_line():
     assert short.ols is None
     assert short.gls is None
     assert short.gls_constant.value == pytest.approx(1e-3, rel=0.1)
-    assert "too few" in short.reason
+    assert short.notice == Notice(code="too_few_images", values={"n": 2, "n_needed": 3})
     decision = decide([short], load_rules("paper"), scope="strip")[0]
     assert not decision.correct
-    assert "no line can be fitted" in decision.reason
+    assert codes(decision) == ["no_line"]
+    assert decision.notices[0].values == {"why": "too_few_images", "n": 2, "n_needed": 3}
 
 
 def test_covariance_that_cannot_be_used_leaves_ols_and_a_reason():
@@ -209,7 +229,7 @@ def test_covariance_that_cannot_be_used_leaves_ols_and_a_reason():
     assert block.ols.slope == pytest.approx(5e-7, rel=0.05)
     assert block.gls is None
     assert block.gls_constant is None
-    assert "not positive semidefinite" in block.reason
+    assert block.notice == Notice(code="indefinite_covariance")
 
 
 def test_no_image_used_at_all():
@@ -233,8 +253,14 @@ def test_rules_from_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (GOOD + "min_rsquared = 0.8", "unknown key 'min_rsquared', expected min_r_squared"),
-        (GOOD.replace("0.05", "5"), "alpha: found 5, expected a number between 0 and 1"),
+        (
+            GOOD + "min_rsquared = 0.8",
+            "mine.toml:4, min_rsquared: found an unknown key, expected min_r_squared?",
+        ),
+        (
+            GOOD.replace("0.05", "5"),
+            "mine.toml:3, alpha: found 5, expected a number between 0 and 1",
+        ),
         (GOOD.replace("0.05", "true"), "alpha: found True"),
         (GOOD.replace("0.05", "nan"), "alpha: found nan"),
         (GOOD.replace('"ols"', '"wls"'), "fit: found 'wls', expected ols or gls"),
@@ -246,8 +272,8 @@ def test_rules_from_a_file(tmp_path):
         (GOOD + 'holm = "yes"', "holm: found 'yes', expected true or false"),
         (GOOD + "min_parallax_gain = 5", "min_parallax_gain: found 5"),
         (GOOD + "name = 3", "name: found 3, expected text"),
-        ("", "fit: is missing"),
-        ("fit = ", "not a TOML file"),
+        ("", "mine.toml, fit: found nothing"),
+        ("fit = ", "mine.toml: found no valid TOML"),
     ],
 )
 def test_bad_rule_files_are_named_with_their_fault(tmp_path, text, words):
@@ -263,7 +289,7 @@ def test_bad_rule_files_are_named_with_their_fault(tmp_path, text, words):
 def test_rule_file_that_is_not_text(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(RuleFormatError, match="not a TOML file"):
+    with pytest.raises(RuleFormatError, match=r"mine\.toml:1: found a file that is not UTF-8"):
         load_rules(path)
 
 

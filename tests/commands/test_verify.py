@@ -1,5 +1,6 @@
 """`posstats verify` as a user meets it: lines, exit codes, messages; and recomputing for real."""
 
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -7,11 +8,14 @@ from pathlib import Path
 
 import pytest
 from archive_documents import (
+    NOW,
     STEPS,
     certificate,
     document,
     p12,
     pem,
+    reassess,
+    render_document,
     results_of,
     write_inputs,
 )
@@ -20,17 +24,19 @@ from helpers import ROOT
 from small_scenario import small_block
 
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
-from posstats.contract.files import from_json, to_json
+from posstats.analysis.steps import analyse
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.archive.file import LARGEST_BYTES
 from posstats.reports.commands import verify as verify_command
 from posstats.reports.commands.cli import cli
-from posstats.reports.verification import words
+from posstats.reports.output import timestamp
+from posstats.reports.verification import answers
 from posstats.reports.verification.recomputation import recompute
 from posstats.reports.verification.values import TOLERANCE
+from posstats.reports.verification.words import asked, words_of
+from posstats.settings import Settings
 
 COMMAND = Path(sys.executable).with_name("posstats")
 
@@ -38,7 +44,11 @@ COMMAND = Path(sys.executable).with_name("posstats")
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
     """A document, its inputs, and a key; the steps of the small document are the installed ones."""
-    monkeypatch.setattr(verify_command, "steps", lambda: STEPS)
+    monkeypatch.setattr(verify_command, "reassess", reassess)
+    monkeypatch.setattr(verify_command, "render_document", render_document)
+    monkeypatch.setattr(verify_command, "recompute", STEPS.recompute)
+    monkeypatch.setattr(verify_command, "versions", lambda: {"numpy": "2.4"})
+    monkeypatch.setattr(timestamp, "clock", lambda: NOW)
     monkeypatch.chdir(tmp_path)
     write_inputs(tmp_path / "block")
     Path("a.pdf").write_bytes(document(results_of(tmp_path / "block")))
@@ -65,10 +75,21 @@ def test_what_does_not_hold_exits_with_one(folder):
     Path("cert.pem").write_bytes(pem(certificate()))
     run = posstats("verify", "a.pdf", "--trust", "cert.pem")
     assert run.exit_code == 1
-    assert "FAIL        is the signer trusted: nobody signed" in run.output
+    words = words_of("en")
+    question = asked(words, answers.TRUSTED)
+    assert f"FAIL        {question}: {words.text('said.nobody_signed')}" in run.output
     run = posstats("verify", "key.p12")
     assert run.exit_code == 1
     assert run.output.count("\n") == 1
+
+
+def test_answers_are_told_in_chinese_too(folder):
+    run = posstats("verify", "a.pdf", "--language", "zh")
+    assert run.exit_code == 0
+    words = words_of("zh")
+    for line in run.output.splitlines():
+        assert line.startswith(tuple(words.of("standing", each) for each in answers.Standing))
+        assert not re.search(r"[a-z]{3,}", line.replace("posstats", "").replace("--inputs", ""))
 
 
 @pytest.mark.parametrize(
@@ -91,12 +112,11 @@ def test_what_cannot_be_asked_is_an_error(folder, arguments, word):
 def test_every_question_is_described():
     page = (ROOT / "docs" / "verify.md").read_text(encoding="utf-8")
     questions = [
-        *(words.READABLE, words.SIGNED, words.APPENDED, words.FILES, words.ASSESSMENT),
-        *(words.PAGES, words.INPUTS, words.RECOMPUTED, words.intact_question("the signature")),
-        words.certificate_question("the signature"),
-        words.trust_question("the signature"),
+        *(answers.READABLE, answers.SIGNED, answers.APPENDED, answers.FILES, answers.ASSESSMENT),
+        *(answers.PAGES, answers.INPUTS, answers.RECOMPUTED),
+        *(answers.Question(code) for code in ("intact", "in_force", "signer_trusted")),
     ]
-    assert not [each for each in questions if f"| {each} |" not in page]
+    assert not [each for each in questions if f"| {asked(words_of('en'), each)} |" not in page]
     assert f"{TOLERANCE:g}".replace("e-0", "e-") in page
     assert f"{LARGEST_BYTES // 1_000_000} MB" in page
 
@@ -110,7 +130,7 @@ def test_help_shows_an_example_and_never_a_passphrase(command):
 
 def test_the_commands_are_light_to_load():
     code = (
-        "import sys, posstats.reports.verification.questions, posstats.reports.sign_command;"
+        "import sys, posstats.reports.verification.questions, posstats.reports.commands.sign;"
         "print(*sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -127,8 +147,7 @@ def analysed(tmp_path_factory) -> tuple[Path, Results]:
     )
     settings = Settings(rules="strict", frame="auto")
     analysis = analyse(read_block(folder), settings)
-    found = results(analysis, created="2026-01-02T03:04:05+00:00")
-    return folder, from_json(to_json(found), Results, "results.json")
+    return folder, results(analysis, created="2026-01-02T03:04:05+00:00")
 
 
 def test_recomputing_a_block_gives_its_results_again(analysed):
@@ -138,8 +157,10 @@ def test_recomputing_a_block_gives_its_results_again(analysed):
 
 def test_rules_of_a_file_are_looked_for_in_the_folder(analysed):
     folder, stated = analysed
-    own = replace(stated, settings=replace(stated.settings, rules="/elsewhere/own.toml"))
-    assert recompute(folder, own).verdict == stated.verdict
-    none = replace(stated, settings=replace(stated.settings, rules="/elsewhere/none.toml"))
+
+    def with_rules(path: str) -> Results:
+        return replace(stated, settings=replace(stated.settings, rules=path))
+
+    assert recompute(folder, with_rules("/elsewhere/own.toml")).verdict == stated.verdict
     with pytest.raises(PosstatsError):
-        recompute(folder, none)
+        recompute(folder, with_rules("/elsewhere/none.toml"))

@@ -12,6 +12,7 @@ from perfect_block import edit, largest_parallax_mm, perfect_block, written
 from posstats.block.camera import Distortion
 from posstats.block.frames import GroundFrame
 from posstats.block.model import Block
+from posstats.contract.notice import listing
 from posstats.errors import GeometryError
 from posstats.formats.block_folder import read_block, write_block, write_orientations
 from posstats.formats.convention import Convention
@@ -65,7 +66,7 @@ def test_a_written_block_comes_back_whole(tmp_path) -> None:
     assert back.accuracy == block.accuracy
     camera, camera_back = block.cameras[0], back.cameras[0]
     assert replace(camera_back, id=camera.id) == camera
-    assert back.warnings == ()
+    assert back.notices == ()
     for name in ("image", "strip", "time_s"):
         expected = getattr(block.orientations, name)
         assert np.array_equal(getattr(back.orientations, name), expected)
@@ -106,7 +107,7 @@ def test_several_cameras_and_missing_adjusted_orientations_come_back(tmp_path) -
     assert back.cameras == block.cameras
     assert np.array_equal(back.orientations.camera, np.arange(8) % 2)
     assert np.array_equal(np.isnan(back.adjusted.angles_rad).any(axis=1), np.arange(8) == 2)
-    assert back.warnings == ("1 image without adjusted orientation: 1_002.",)
+    assert back.notices == listing("images_without_adjusted", ["1_002"])
     assert largest_parallax_mm(back) < 1e-6
 
 

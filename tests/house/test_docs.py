@@ -2,23 +2,23 @@
 
 import re
 import runpy
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from helpers import ROOT, shared_path
 from small_blocks import Layout, observed_block, true_block
-from strip_scene import block, scene
 
 from posstats.analysis.results import results
-from posstats.analysis.steps import Settings, analyse
+from posstats.analysis.steps import analyse
 from posstats.block.image_pairs import stereo_models
 from posstats.contract.files import as_values
 from posstats.formats.block_folder import read_block, write_block
 from posstats.geometry.ground.check_points import check_point_residuals
 from posstats.numerics.kernels.rotation import wrapped
+from posstats.reports.block.wording import warnings
 
 DOCS = ROOT / "docs"
+KEYS = runpy.run_path(str(DOCS / "keys.py"))
 
 
 def _example(folder):
@@ -38,7 +38,7 @@ def test_the_example_of_the_block_format_is_a_block(tmp_path):
         "ground_points.csv",
     }
     read = read_block(tmp_path)
-    assert read.warnings == ()
+    assert read.notices == ()
     models = stereo_models(read)
     assert list(models.pairs.n_points) == [6]
     # made in the grid with 0.2 px of noise: q has 0.2 * sqrt(2) px, the frame adds a little
@@ -67,23 +67,16 @@ def test_links_lead_to_pages_and_headings_that_exist(page):
             assert heading in anchors, target
 
 
-def _keys(value):
-    if isinstance(value, dict):
-        return set(value).union(*map(_keys, value.values()))
-    return set().union(*map(_keys, value)) if isinstance(value, list) else set()
+@pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.name)
+def test_tables_of_keys_are_made_of_the_contract(page):
+    text = page.read_text(encoding="utf-8")
+    assert KEYS["written"](text) == text
 
 
-def test_every_key_of_the_results_is_described():
-    oriented, ground = scene(1, n_points=20)
-    turned = oriented.with_angles(oriented.angles_rad + 1e-5 * np.arange(5)[:, None])
-    made = block(turned, ground, is_check=np.arange(20) < 4)
-    analysis = analyse(replace(made, adjusted=oriented), Settings(errors="bundle", frame="auto"))
-    values = as_values(results(analysis))
-    packages = set(values.pop("versions"))
+def test_every_field_of_the_contract_says_what_it_holds():
     page = (DOCS / "results.md").read_text(encoding="utf-8")
-    named = set(re.findall(r"`(\w+)`", page)) | set(re.findall(r"^### (\w+)$", page, re.MULTILINE))
-    assert _keys(values) - named == set()
-    assert "numpy" in packages
+    assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)
+    assert not re.findall(r"^\| `\w+` \| [^|]* \|\s*\|$", page, re.MULTILINE)
 
 
 def _code(page, language):
@@ -130,7 +123,7 @@ def test_the_worked_example_makes_the_block_it_shows(tmp_path, monkeypatch):
     apart = wrapped(made.orientations.angles_rad - given.orientations.angles_rad)
     assert np.abs(apart).max() < 1e-4
     text = page.read_text(encoding="utf-8")
-    assert all(f"warning: {warning}\n" in text for warning in made.warnings)
+    assert all(f"warning: {warning}\n" in text for warning in warnings(made.notices))
     assert f"{len(made.tie_points)} measurements of {len(made.tie_points.point_id)}" in text
 
 

@@ -11,7 +11,6 @@ import pytest
 from helpers import ROOT
 from small_scenario import small_block
 
-from posstats.adjustment.settings import DriftPriors
 from posstats.block.image_pairs import stereo_models
 from posstats.numerics.bundle.parameters import BORESIGHT
 from posstats.numerics.kernels.rotation import vector_from_rotation, wrapped
@@ -30,6 +29,7 @@ from posstats.papers.wucaps.situations import (
     simulated,
     situation_scenario,
 )
+from posstats.settings import DriftPriors
 
 
 @pytest.fixture(scope="module", params=SITUATIONS)

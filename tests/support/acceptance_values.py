@@ -1,15 +1,18 @@
-"""Made-up acceptances for the tests of the document: shaped as ``posstats-acceptance/1``."""
+"""Made-up acceptances for the tests of the document."""
 
-import copy
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
-from report_results import area_results, with_rows
+from report_results import area_results
 
-from posstats.contract.files import as_values
+from posstats.contract.acceptance import SCHEMA, Acceptance
+from posstats.contract.files import as_values, from_values
 from posstats.contract.results import Results
+
+D = TypeVar("D", Acceptance, Results)
 
 FULL = 64  # points from which there are a blunder and a point that cannot be intersected
 HOSTILE = "<script>alert(1)</script>"
@@ -26,11 +29,19 @@ STATEMENT = (
 
 
 def results(simulated: bool = True) -> Results:
-    """Results with a bundle adjustment, as the acceptance rests on."""
+    """Results as the acceptance rests on."""
     made = area_results(per_strip=12)
-    made = with_rows(made, "regression", lambda row: replace(row, constant_p_value=0.2))
     block = replace(made.block, simulated=simulated, n_check_points=200, crs="EPSG:32648")
-    return replace(made, block=block)
+    settings = replace(made.settings, position_m=0.05, angle_rad=1.0e-4, image_px=0.3)
+    regression = tuple(replace(row, constant_p_value=0.2) for row in made.regression)
+    return replace(made, block=block, settings=settings, regression=regression)
+
+
+def edited(document: D, edit: Callable[[dict[str, Any]], object]) -> D:
+    """A document with its values changed by a function."""
+    values = as_values(document)
+    edit(values)
+    return from_values(values, type(document), "edited")
 
 
 def acceptance(
@@ -42,19 +53,21 @@ def acceptance(
     seed: int = 7,
     orientation: str = "selected",
     simulated: bool = True,
-) -> dict[str, Any]:
-    """An acceptance of `n` check points by the ASPRS standard, class 10 cm."""  # fmt: skip
+) -> Acceptance:
+    """An acceptance of `n` check points by the ASPRS standard, class 10 cm."""
+    base = results(simulated)
     points = _points(n, sigma_m, mean_m, seed)
     accuracy = _accuracy(points)
     requirements = _requirements(accuracy, points)
-    return {
-        "schema": "posstats-acceptance/1",
+    values = {
+        "schema": SCHEMA,
         "posstats_version": "0.1.0",
         "versions": {"posstats": "0.1.0", "python": "3.11.9", "numpy": "2.4.6"},
         "created": "2026-01-05T00:00:00+00:00",
         "document_id": "PA-3F2A-91C0-77DE",
         "language": language,
         "verdict": verdict(requirements),
+        "statements": [],
         "statement": STATEMENT.format(h=100.0 * accuracy["rmse"][2]["product_m"]) if n else "",
         "orientation": orientation,
         "orientation_reason": {"code": orientation, "values": {}},
@@ -79,9 +92,9 @@ def acceptance(
             "flight_date": "2025-10-12", "sensor": "frame camera, 12 µm, f = 120 mm",
             "place": "Area 1", "remarks": "",
         },
-        "block": as_values(results(simulated).block) | {"n_check_points": n},
+        "block": as_values(base.block) | {"n_check_points": n},
         "results": {"file": "results.json", "sha256": "b" * 64},
-        "settings": as_values(results().settings),
+        "settings": as_values(base.settings),
         "requirements": requirements,
         "quality_grade": None,
         "accuracy": accuracy,
@@ -95,20 +108,21 @@ def acceptance(
         ],
         "warnings": ["Check point CP007 lies within 50 m of a control point."] if n else [],
     }  # fmt: skip
+    return from_values(values, Acceptance, "made up")
 
 
-def cases() -> dict[str, dict[str, Any]]:
+def cases() -> dict[str, Acceptance]:
     """Every kind of acceptance that the document has to show."""
     return {
         "accepted": acceptance(),
         "rejected": acceptance(sigma_m=0.12, mean_m=0.06),
-        "not assessable": _without_survey(acceptance(FULL)),
+        "not assessable": edited(acceptance(FULL), _without_survey),
         "borderline": acceptance(FULL, sigma_m=0.062, seed=3),
         "few": acceptance(12),
         "none": acceptance(0),
-        "long": _long(acceptance()),
-        "hostile": _hostile(acceptance(FULL)),
-        "chinese names": _chinese(acceptance(FULL)),
+        "long": edited(acceptance(), _long),
+        "hostile": edited(acceptance(FULL), _hostile),
+        "chinese names": edited(acceptance(FULL), _chinese),
     }
 
 
@@ -165,10 +179,11 @@ def _accuracy(points: list[dict[str, Any]]) -> dict[str, Any]:
             _percentile(name, iso, dh if name[0] == "C" else dv)
             for name, iso in (("CE90", 44), ("CE95", 45), ("LE90", 35), ("LE95", 36))
         ],
-        "covariance_m2": np.cov(d.T).tolist() if n > 1 else None,
+        "covariance_iso_19157": 32,
+        "covariance_m2": np.cov(d.T).tolist() if n > 1 else 3 * [3 * [None]],
         "mean_shift": {"t2": 4.21, "f": 1.389, "df1": 3, "df2": n - 3, "p": 0.247, "reason": None}
         if n > 3 else
-        {"t2": None, "f": None, "df1": None, "df2": None, "p": None, "reason": "no_points"},
+        {"t2": None, "f": None, "df1": 3, "df2": n - 3, "p": None, "reason": "no_points"},
         "normality": [
             {"component": c, "w": 0.993 if n > 2 else None, "p": 0.46 if n > 2 else None,
              "reason": None if n > 2 else "no_points"}
@@ -199,10 +214,11 @@ def _rmse(component: str, part: Any, measure: int | None) -> dict[str, Any]:
 def _percentile(name: str, measure: int, lengths: Any) -> dict[str, Any]:
     if not len(lengths):
         return {"name": name, "iso_19157": measure,
-                "value_m": None, "low_m": None, "high_m": None, "normal_m": None}  # fmt: skip
+                "value_m": None, "low_m": None, "high_m": None, "normal_m": None,
+                "n_for_high": 36}  # fmt: skip
     value = float(np.percentile(lengths, float(name[2:])))
     return {"name": name, "iso_19157": measure, "value_m": value, "low_m": 0.92 * value,
-            "high_m": 1.09 * value, "normal_m": 0.98 * value}  # fmt: skip
+            "high_m": 1.09 * value, "normal_m": 0.98 * value, "n_for_high": 36}  # fmt: skip
 
 
 def _requirements(accuracy: dict[str, Any], points: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -221,7 +237,7 @@ def _requirements(accuracy: dict[str, Any], points: list[dict[str, Any]]) -> lis
         _row("survey_v", "7.12", "survey_v", accuracy["survey_v_m"], 0.05, "class_v / 2"),
         _row("points", "7.13", "n_check_points", n, 30.0, "30", unit="1"),
         _row("blunders_h", "7.13", "n_blunders_h", blunders if n else None, 2.0, "2", unit="1",
-             threshold="3 * class_h"),
+             threshold=0.3),
         _row("drift", "", "remaining_drift_p", 0.21 if n else None, 0.05, "0.05", unit="1",
              mandatory=False),
         _row("parallax", "", "parallax_rms_px", 0.4, 0.667, "0.667", unit="px", mandatory=False),
@@ -231,7 +247,7 @@ def _requirements(accuracy: dict[str, Any], points: list[dict[str, Any]]) -> lis
 def _row(
     name: str, clause: str, quantity: str, found: float | None, limit: float, formula: str,
     around: dict[str, Any] | None = None, *, unit: str = "m", mandatory: bool = True,
-    exceeding: str = "fail", threshold: str | None = None,
+    exceeding: str = "fail", threshold: float | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     at_least = quantity in {"n_check_points", "remaining_drift_p"}
     margin = None if found is None else (found - limit if at_least else limit - found)
@@ -256,7 +272,7 @@ def _row(
     return row
 
 
-def _without_survey(made: dict[str, Any]) -> dict[str, Any]:
+def _without_survey(made: dict[str, Any]) -> None:
     made["accuracy"] |= {"survey_known": False, "survey_h_m": None, "survey_v_m": None}
     for row in made["accuracy"]["rmse"]:
         row["product_m"] = None
@@ -267,10 +283,10 @@ def _without_survey(made: dict[str, Any]) -> dict[str, Any]:
             row |= {"found": None, "margin": None, "verdict": "not assessed", "low": None,
                     "high": None, "reason_code": "survey accuracy not stated",
                     "reason_values": {}}  # fmt: skip
-    return made | {"verdict": verdict(made["requirements"])}
+    made["verdict"] = verdict(made["requirements"])
 
 
-def _long(made: dict[str, Any]) -> dict[str, Any]:
+def _long(made: dict[str, Any]) -> None:
     made["contract"] |= {
         "title": "Digital aerial photography, aerial triangulation and orthophoto production for "
         "the third national land survey, lot 14, counties of the upper valley and the basin",
@@ -282,11 +298,9 @@ def _long(made: dict[str, Any]) -> dict[str, Any]:
     made["check_points"][3]["point"] = LONG_ID
     made["check_points"][33]["point"] = LONG_ID[::-1]
     made["attachments"][0]["file"] = "a_very_long_name_of_a_file_" * 4 + ".toml"
-    return made
 
 
-def _hostile(made: dict[str, Any]) -> dict[str, Any]:
-    made = copy.deepcopy(made)
+def _hostile(made: dict[str, Any]) -> None:
     made["contract"] |= {"title": HOSTILE, "client": FORMULA, "sensor": "a\u202eb & \"c\" 'd'"}
     made["contract"]["inspector"] = "{report.version} %s </style>"
     made["document_id"] = 'PA"; } </style>' + HOSTILE
@@ -296,18 +310,19 @@ def _hostile(made: dict[str, Any]) -> dict[str, Any]:
     made["warnings"] = [HOSTILE, FORMULA]
     made["profile"]["title"] = HOSTILE
     made["accuracy"]["largest_residual"][0]["point"] = HOSTILE
-    return made
 
 
-def _chinese(made: dict[str, Any]) -> dict[str, Any]:
+def _chinese(made: dict[str, Any]) -> None:
     made["contract"] |= {"title": "成都市航空摄影测量", "client": "成都市自然资源局"}
     made["check_points"][5]["point"] = CHINESE
-    return made
 
 
-def chinese_contract(made: dict[str, Any]) -> dict[str, Any]:
+def chinese_contract(document: Acceptance) -> Acceptance:
     """The same acceptance of a contract in Chinese."""
-    made = copy.deepcopy(made)
+    return edited(document, _in_chinese)
+
+
+def _in_chinese(made: dict[str, Any]) -> None:
     made["language"] = "zh"
     made["contract"] |= {
         "title": "某市 1:2000 数字航空摄影测量项目",
@@ -315,4 +330,3 @@ def chinese_contract(made: dict[str, Any]) -> dict[str, Any]:
         "inspector": "某省测绘产品质量监督检验站", "flight": "第 1～5 架次",
         "sensor": "框幅式数字航摄仪，像元 12 µm，焦距 120 mm", "place": "第一测区",
     }  # fmt: skip
-    return made

@@ -4,10 +4,11 @@ import datetime as dt
 import hashlib
 import html
 import io
-import json
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 
+import acceptance_values as values
 import pikepdf
 from cryptography import x509
 from cryptography.hazmat.primitives import hashes
@@ -21,12 +22,18 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import NameOID
 
 from posstats import __version__
+from posstats.contract.acceptance import Acceptance, AttachedFile, JudgedPoint, JudgedRequirement
+from posstats.contract.files import to_json
+from posstats.contract.results import Results
+from posstats.contract.survey import InputFile
 from posstats.reports.archive.writing import Attachment, render_archive
 from posstats.reports.typefaces import fonts
 from posstats.reports.verification.steps import Steps
 
 CREATED = "2026-01-02T03:04:05+00:00"
-NOW = dt.datetime.now(dt.UTC)
+NOW = dt.datetime(2026, 6, 1, 12, tzinfo=dt.UTC)
+ALWAYS = (-10_000, 40_000)
+"""Days around NOW: a certificate for programs that read the clock of the machine."""
 INPUTS = {"block.toml": b'name = "flight7"\n', "orientations.csv": b"image,x\na,1.0\n"}
 PROFILE = b'name = "house"\nlimit = 0.1\n'
 TEMPLATE = b"<p>Example Survey Ltd</p>"
@@ -71,35 +78,51 @@ def remembering(page, files, created, identifier) -> bytes:
 
 def render_document(acceptance, results, templates) -> str:
     """A page as a function of its data alone."""
+    (judged,) = acceptance.requirements
     rows = "".join(
-        f'<tr><th scope="row">{html.escape(row["point"])}</th><td>{row["dx_m"]:.3f}</td></tr>'
-        for row in acceptance["check_points"]
+        f'<tr><th scope="row">{html.escape(row.point)}</th><td>{row.dx_m:.3f}</td></tr>'
+        for row in acceptance.check_points
     )
     return PAGE.format(
-        id=acceptance["document_id"],
-        verdict=html.escape(acceptance["verdict"]),
+        id=acceptance.document_id,
+        verdict=html.escape(acceptance.verdict),
         letterhead=b"".join(templates.values()).decode(),
-        block=html.escape(results["block"]["name"]),
-        rmse=acceptance["rmse_m"],
-        limit=acceptance["limit_m"],
+        block=html.escape(results.block.name),
+        rmse=judged.found,
+        limit=judged.limit,
         pixel=PIXEL,
         font=_font(),
         rows=rows,
     )
 
 
-def reassess(results, profile_files, acceptance) -> dict:
+def reassess(results, profile_files, acceptance) -> Acceptance:
     limit = float(profile_files["house.toml"].rsplit(b"=")[-1])
-    worst = max(row["dx_m"] for row in results["check_points"])
-    verdict = "accepted" if worst <= limit else "rejected"
-    found = {"verdict": verdict, "rmse_m": worst, "limit_m": limit}
-    return {**acceptance, **found, "check_points": results["check_points"]}
+    rows = results.check_point_residuals
+    worst = max(row.dx_m for row in rows)
+    kept = worst <= limit
+    judged = JudgedRequirement(
+        id="worst", clause="1", quantity="largest_residual_h", source="house", mandatory=True,
+        exceeding="fail", found=worst, limit=limit, limit_formula="0.1", unit="m",
+        margin=limit - worst, verdict="pass" if kept else "fail",
+        reason_code="within" if kept else "exceeds", reason_values={},
+    )  # fmt: skip
+    points = [{n: v for n, v in vars(row).items() if n != "orientation"} for row in rows]
+    return replace(
+        acceptance,
+        verdict="accepted" if kept else "rejected",
+        requirements=(judged,),
+        check_points=tuple(JudgedPoint(**row, dh_m=row["dx_m"], blunder=False) for row in points),
+    )
 
 
-def recompute(folder, pattern) -> dict:
+def recompute(folder, pattern) -> Results:
     x = float((folder / "orientations.csv").read_text().split(",")[-1])
-    points = [{"point": f"p{n}", "dx_m": 0.001 * n * x} for n in range(25)]
-    return {**pattern, "check_points": points}
+    row = values.results().check_point_residuals[0]
+    points = (
+        replace(row, point=f"p{n}", dx_m=0.001 * n * x, dy_m=0.0, dz_m=0.0) for n in range(25)
+    )
+    return replace(pattern, check_point_residuals=tuple(points))
 
 
 NUMBERS = {"posstats": __version__, "numpy": "2.4"}
@@ -111,56 +134,65 @@ def sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def results_of(folder) -> dict:
-    inputs = [{"file": name, "sha256": sha256(content)} for name, content in INPUTS.items()]
-    pattern = {
-        "schema": "posstats-results/1",
-        "posstats_version": __version__,
-        "versions": {"numpy": "2.4"},
-        "created": CREATED,
-        "block": {"name": "flight <7>", "inputs": inputs},
-    }
-    return recompute(folder, pattern)
+@cache
+def _pattern() -> tuple[Results, Acceptance]:
+    """Small results and an acceptance, neither computed."""
+    results = replace(
+        values.results(),
+        posstats_version=__version__, versions={"numpy": "2.4"}, created=CREATED,
+        images=(), parallax=(), models=(), error_sources=(), angle_errors=(), regression=(),
+    )  # fmt: skip
+    return results, values.acceptance(0)
 
 
-def contents(results, *, change=lambda acceptance: None) -> tuple[dict, list[Attachment]]:
-    """The acceptance values of results, and all files to embed."""
+def results_of(folder) -> Results:
+    results, _ = _pattern()
+    inputs = tuple(InputFile(file=name, sha256=sha256(each)) for name, each in INPUTS.items())
+    block = replace(results.block, name="flight <7>", inputs=inputs)
+    return recompute(folder, replace(results, block=block))
+
+
+def contents(results, *, change=lambda values: None) -> tuple[Acceptance, list[Attachment]]:
+    """The acceptance of results, and all files to embed."""
     files = [
-        Attachment("results.json", json.dumps(results).encode()),
+        Attachment("results.json", to_json(results).encode()),
         Attachment("profile.toml", PROFILE, "Source"),
         Attachment("block.toml", INPUTS["block.toml"], "Source"),
         Attachment("tables/points.csv", b"point,dx_m\np1,0.1\n", "Supplement"),
         Attachment("templates/logo.svg", TEMPLATE, "Supplement"),
     ]
-    pattern = {
-        "schema": "posstats-acceptance/1",
-        "posstats_version": __version__,
-        "versions": {"numpy": "2.4", "weasyprint": version("weasyprint")},
-        "created": CREATED,
-        "document_id": "PA-3F2A-91C0-77DE",
-        "profile": {"files": [{"file": "house.toml", "sha256": sha256(PROFILE)}]},
-        "results": {"file": "results.json", "sha256": sha256(files[0].content)},
-        "attachments": [
-            {"file": each.name, "sha256": sha256(each.content), "relationship": each.relationship}
+    _, pattern = _pattern()
+    profile = (InputFile(file="house.toml", sha256=sha256(PROFILE)),)
+    pattern = replace(
+        pattern,
+        posstats_version=__version__,
+        versions={"numpy": "2.4", "weasyprint": version("weasyprint")},
+        created=CREATED,
+        profile=replace(pattern.profile, files=profile),
+        results=InputFile(file="results.json", sha256=sha256(files[0].content)),
+        attachments=tuple(
+            AttachedFile(
+                file=each.name, sha256=sha256(each.content), relationship=each.relationship
+            )
             for each in files
-        ],
-    }
-    acceptance = reassess(results, {"house.toml": PROFILE}, pattern)
-    change(acceptance)
-    return acceptance, [*files, Attachment("acceptance.json", json.dumps(acceptance).encode())]
+        ),
+    )
+    assessed = reassess(results, {"house.toml": PROFILE}, pattern)
+    acceptance = values.edited(assessed, change)
+    return acceptance, [*files, Attachment("acceptance.json", to_json(acceptance).encode())]
 
 
 def document(
     results,
     *,
-    change=lambda acceptance: None,
+    change=lambda values: None,
     edit=lambda page: page,
     render=remembering,
 ) -> bytes:
-    """The PDF; `change` its data before it is laid out, `edit` the page alone."""
+    """The PDF; `change` the values of its data before it is laid out, `edit` the page alone."""
     acceptance, files = contents(results, change=change)
     page = edit(render_document(acceptance, results, {"letterhead.html.j2": TEMPLATE}))
-    return render(page, files, acceptance["created"], acceptance["document_id"].encode())
+    return render(page, files, acceptance.created, acceptance.document_id.encode())
 
 
 def write_inputs(folder) -> None:

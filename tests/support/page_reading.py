@@ -1,14 +1,11 @@
 """Reading pages as their readers do: the texts of HTML, the pages of a PDF, a browser."""
 
 import re
-import shutil
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 
-import pytest
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+from needed import program
 
 
 class _Texts(HTMLParser):
@@ -40,9 +37,7 @@ def plain(text: str) -> str:
 
 
 def pdf_pages(path: Path) -> list[str]:
-    if not shutil.which("pdftotext"):
-        pytest.skip("pdftotext (poppler-utils) is not installed")
-    command = ["pdftotext", "-layout", str(path), "-"]
+    command = [program("pdftotext", package="poppler-utils"), "-layout", str(path), "-"]
     run = subprocess.run(command, capture_output=True, check=True, text=True)
     return [plain(text) for text in run.stdout.split("\f")[:-1]]
 
@@ -88,6 +83,7 @@ def _browse(frame: Path, profile: Path) -> tuple[str, str]:
         "--hide-scrollbars", "--enable-logging=stderr", "--allow-file-access-from-files",
         "--window-size=1400,1000", "--virtual-time-budget=8000",
     ]  # fmt: skip
-    command = [CHROMIUM, *flags, f"--user-data-dir={profile}", "--dump-dom", frame.as_uri()]
-    run = subprocess.run(command, capture_output=True, check=True, text=True, timeout=60)
+    browser = program("chromium", "chromium-browser", package="chromium")
+    command = [browser, *flags, f"--user-data-dir={profile}", "--dump-dom", frame.as_uri()]
+    run = subprocess.run(command, capture_output=True, check=True, text=True)
     return re.search(r'id="told">([^<]*)', run.stdout)[1], run.stderr

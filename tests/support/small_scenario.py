@@ -9,6 +9,7 @@ from posstats.synthetic import load_scenario, simulate
 
 OMEGA_CONSTANT_RAD = 0.018
 OMEGA_DRIFT_RAD_PER_S = 4.68e-7
+GOOD_POINTS = {"n": 9, "distribution": "grid", "image_px": 0.2, "ground_m": 0.02}
 
 
 def scenario(**changes: dict[str, Any]) -> dict[str, Any]:

@@ -1,15 +1,19 @@
 """Stereo models of known truth, projected with numpy alone: oracle of the orientation tests."""
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from posstats.block.image_pairs import ImagePairs, StereoModels
 from posstats.block.model import Orientations
+from posstats.numerics.kernels.coplanarity import base_frames, y_parallax
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_angles
 
 PRINCIPAL_DISTANCE_PX = np.array([10000.0, 8000.0])  # of two cameras
 PIXEL_SIZE_MM = np.array([0.012, np.nan])
 HEIGHT_M = 3000.0
 BASE_M = 900.0
+SYSTEMS = ("omega-phi-kappa", "phi-omega-kappa")
+METHODS = ("independent", "dependent", "angles", "omega", "phi", "kappa")
 
 
 def true_models(
@@ -105,3 +109,27 @@ def with_vectors(models, left, right):
 def relative_rotation(result):
     """(p, 3, 3) left_from_right."""
     return np.swapaxes(result.ground_from_left, 1, 2) @ result.ground_from_right
+
+
+def noisy_models(**kwargs):
+    return with_image_noise(with_angle_errors(true_models(**kwargs), 0.01), 0.2)
+
+
+def least_of_scipy(models, k, **options):
+    """Model k by scipy's Levenberg-Marquardt: change of the five angles (rad) and RMS (px)."""
+    frame = base_frames(models.base_m)[k]
+    base = (frame @ models.base_m[k])[None]
+    images = [models.pairs.left[k], models.pairs.right[k]]
+    rotation = frame @ models.orientations.ground_from_image[images]
+    start = angles_from_rotation(rotation, "omega-phi-kappa").ravel()
+    points = slice(*models.pairs.offsets[k : k + 2])
+    vectors = models.left_vectors[points], models.right_vectors[points]
+    offsets = np.array([0, len(vectors[0])])
+
+    def residuals(free):
+        angles = np.concatenate([start[:1], free]).reshape(2, 3)
+        turned = rotation_from_angles(angles, "omega-phi-kappa")
+        return y_parallax(*vectors, offsets, turned[:1], turned[1:], base)
+
+    least = least_squares(residuals, start[1:], method="lm", xtol=1e-15, ftol=1e-15, **options)
+    return least.x - start[1:], np.sqrt(np.mean(least.fun**2))

@@ -70,7 +70,7 @@ def test_strips_may_have_different_numbers_of_images():
         (changed(flight={"images_per_strip": 2.5}), "scenario, flight.images_per_strip: found 2.5"),
         (
             changed(flight={"images_per_strip": [3, 3, 3]}),
-            "scenario, flight: images_per_strip lists 3 strips, n_strips is 2",
+            "scenario, flight.images_per_strip: found 3 strips, expected n_strips, 2",
         ),
         (
             changed(flight={"n_strips": 10_000, "images_per_strip": 10_000}),
@@ -123,7 +123,7 @@ def test_strips_may_have_different_numbers_of_images():
         (changed(errors={"omega": {"constant_rad": 18}}), "scenario, errors.omega.constant_rad:"),
         (changed(errors={"image_px": -0.1}), "scenario, errors.image_px: found -0.1"),
         (changed(errors={"blunder_share": 1.0}), "scenario, errors.blunder_share: found 1.0"),
-        (changed(errors={"blunder_px": 400}), "scenario: errors.blunder_px: found 400, expected"),
+        (changed(errors={"blunder_px": 400}), "scenario, errors.blunder_px: found 400, expected"),
         (changed(check_points={"n": -1}), "scenario, check_points.n: found -1"),
         (changed(check_points={"distribution": "star"}), "scenario, check_points.distribution:"),
         (changed(accuracy={"image_px": 0}), "scenario, accuracy.image_px: found 0"),
@@ -153,9 +153,9 @@ def test_a_missing_table_is_named():
     ("content", "expected"),
     [
         (b"", "bad.toml, block: found nothing"),
-        (b"[block\nname = 1", "bad.toml: is not valid TOML"),
-        (b"\xff\xfe\x00\x01", "bad.toml: is not a text file in UTF-8"),
-        (b"[block]\nname = 3\n", "bad.toml, block.name: found 3, expected a text"),
+        (b"[block\nname = 1", "bad.toml: found no valid TOML"),
+        (b"\xff\xfe\x00\x01", "bad.toml:1: found a file that is not UTF-8"),
+        (b"[block]\nname = 3\n", "bad.toml:2, block.name: found 3, expected a text"),
     ],
 )
 def test_a_file_is_named_in_its_findings(tmp_path, content, expected):

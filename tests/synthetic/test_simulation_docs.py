@@ -20,7 +20,7 @@ def test_the_example_can_be_flown():
     block = simulate(load_scenario(tomllib.loads(example)))
     assert len(stereo_models(block)) == 14
     assert block.check_points.sum() == 6
-    assert block.warnings == ()
+    assert block.notices == ()
     # 0.018 rad of pitch on base and format of this camera: about 14.7 mm of parallax per radian
     q = stereo_models(block).y_parallax_px() * 0.012
     assert np.sqrt(np.mean(q**2)) == pytest.approx(14.7 * 0.018, rel=0.05)

@@ -27,19 +27,21 @@ from posstats.geometry.coplanarity.normals import (
 from posstats.geometry.coplanarity.point_pairs import PointPairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import AngleSystem
-from posstats.numerics.solvers.dense import Propagation, factorised, mirrored, propagated
+from posstats.numerics.solvers.dense import Propagation, mirrored, normals_factor, propagated
+from posstats.numerics.solvers.robust import (
+    SMALLEST_SCALE,
+    huber_weights,
+    kept_weights,
+    median_scale,
+)
 
 MAX_IMAGES = 1500  # some five dense matrices of (6 n)^2 numbers at once: 3.2 GB
 MAX_ITERATIONS = 60
-_HUBER = 1.345
-_REJECTION = 3.5
-_NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
 _LARGEST_STEP_RAD = 0.2
 _Phase = Literal["reweight", "plain", "fixed"]
 _NEXT: dict[_Phase, _Phase] = {"reweight": "plain", "plain": "fixed", "fixed": "fixed"}
 # A phase has settled when the mean square step, in standard errors, falls below:
 _SETTLED: dict[_Phase, float] = {"reweight": 0.1, "plain": 1e-2, "fixed": 1e-9}
-_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +80,7 @@ class Priors:
 
 
 @dataclass(frozen=True, eq=False)
-class AdjustedBlock:
+class CoplanarityAdjustment:
     """Result of the adjustment of n images.
 
     Attributes
@@ -103,13 +105,13 @@ class AdjustedBlock:
     n_iterations: int
 
 
-def adjust(
+def adjust_coplanarity(
     pairs: PointPairs,
     priors: Priors,
     *,
     robust: bool = True,
     progress: Callable[[int, int], object] | None = None,
-) -> AdjustedBlock:
+) -> CoplanarityAdjustment:
     """Adjust the block: Gauss-Newton from the priors.
 
     The robust solution reweights after Huber until it settles, then takes out pairs beyond
@@ -161,13 +163,13 @@ class _Weighting:
         if self.phase == "fixed":
             return self
         standardised = np.abs(observed.q) / np.sqrt(observed.variance)
-        spread = max(_NORMAL_MAD * float(np.median(standardised)), smallest_px)
-        weight = np.ones_like(standardised)
+        spread = median_scale(standardised, smallest_px)
         if self.phase == "reweight":
-            weight = np.minimum(1.0, _HUBER * spread / np.maximum(standardised, smallest_px))
+            weight = huber_weights(standardised, spread)
             return replace(self, robust_weight=weight, scale_px=spread)
+        weight = np.ones_like(standardised)
         if self.robust:
-            weight = (standardised <= _REJECTION * spread).astype(float)
+            weight = kept_weights(standardised, spread)
         scale = float(np.sqrt(np.average(standardised**2, weights=weight)))
         return replace(self, robust_weight=weight, scale_px=max(scale, smallest_px))
 
@@ -226,7 +228,7 @@ def _equations(
 ) -> tuple[_Weighting, _Normals]:
     """Weights and normal equations at a state; the derivatives, by far larger, end here."""
     observed = _linearised(pairs, priors, frames, state)
-    weighting = state.weighting.updated(observed, _SMALLEST_SCALE * priors.image_px)
+    weighting = state.weighting.updated(observed, SMALLEST_SCALE * priors.image_px)
     return weighting, _normal_equations(pairs, observed, weighting, with_noise=with_noise)
 
 
@@ -299,7 +301,7 @@ def _parts(pairs: PointPairs) -> list[slice]:
 
 def _step(normals: Floats, right_side: Floats) -> tuple[Floats, float]:
     """Gauss-Newton step (6 n,), no angle turned too far, and its mean square in standard errors."""
-    step = factorised(normals).solve(right_side)
+    step = normals_factor(normals).solve(right_side)
     decrement = float(step @ right_side) / step.size
     largest = float(np.abs(step.reshape(-1, 6)[:, :3]).max())
     return step * min(1.0, _LARGEST_STEP_RAD / max(largest, 1e-300)), decrement
@@ -307,13 +309,13 @@ def _step(normals: Floats, right_side: Floats) -> tuple[Floats, float]:
 
 def _result(
     pairs: PointPairs, priors: Priors, frames: Floats, state: _State, count: int
-) -> AdjustedBlock:
+) -> CoplanarityAdjustment:
     propagation, sigma2 = _propagated(pairs, priors, frames, state)
     n = len(priors.angles_rad)
     angles = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()
     believed = priors.image_px**2 if np.isnan(sigma2) else sigma2
     estimate = state.unknowns.reshape(n, 6)
-    return AdjustedBlock(
+    return CoplanarityAdjustment(
         angles_rad=estimate[:, :3],
         position_m=estimate[:, 3:],
         covariance_rad2=propagation.covariance(believed, angles).reshape(n, 3, n, 3),

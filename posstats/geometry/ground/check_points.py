@@ -86,7 +86,8 @@ def check_point_residuals(
 
 def surveyed_check_points(block: Block) -> tuple[GroundPoints, Ints]:
     """The g check points, and (g,) their indices among the tie points; -1: in no image."""
-    given = _check_points(block.ground_points)
+    surveyed = block.ground_points
+    given = GroundPoints.none() if surveyed is None else surveyed.subset(surveyed.is_check)
     wanted = set(given.point)
     number = {point: k for k, point in enumerate(block.tie_points.point_id) if point in wanted}
     return given, np.array([number.get(point, -1) for point in given.point], dtype=np.intp)
@@ -167,20 +168,6 @@ def _extremes_and_rmse(
         return None, None, None
     rmse = float(np.sqrt(np.sum(values**2) / divisor))
     return float(values.max()), float(values.min()), rmse
-
-
-def _check_points(ground_points: GroundPoints | None) -> GroundPoints:
-    if ground_points is None:
-        none = np.empty(0)
-        return GroundPoints(none.astype(object), np.empty((0, 3)), none.astype(bool), none, none)
-    keep = ground_points.is_check
-    return GroundPoints(
-        point=ground_points.point[keep],
-        position_m=ground_points.position_m[keep],
-        is_check=ground_points.is_check[keep],
-        sigma_xy_m=ground_points.sigma_xy_m[keep],
-        sigma_z_m=ground_points.sigma_z_m[keep],
-    )
 
 
 def _to_crs(block: Block, computed: IntersectedPoints) -> Floats:

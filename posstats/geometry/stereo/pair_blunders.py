@@ -18,10 +18,10 @@ from posstats.geometry.stereo.pair_equations import (
 )
 from posstats.numerics.kernels.algebra import solve_normals, sum_of_products
 from posstats.numerics.kernels.compiled import inner_kernel, kernel
+from posstats.numerics.solvers.robust import TUKEY
 
 _HUBER_ROUNDS, _MAX_ROUNDS, _ROUND_STEP_PX = 10, 40, 1e-1
 _HUBER = 0.3  # of the scale: nearly least absolute values, which blunders bend little
-_TUKEY = 4.685  # 95 % efficiency on normal errors
 # The scale is that of the smallest two fifths of the residuals, the elements' own left out:
 # three fifths may be blunders.
 _SCALE_SHARE, _NORMAL_FACTOR = 0.4, 1.9069
@@ -81,7 +81,7 @@ def _is_doubtful(pair: Pair) -> bool:
     """Whether Huber's weights may come from a solution that blunders have bent."""
     n_far = 0
     for weight in pair.weights:
-        if weight < _HUBER / _TUKEY:
+        if weight < _HUBER / TUKEY:
             n_far += 1
     return len(pair.weights) < _FEW_POINTS or n_far > _MANY_FAR * len(pair.weights)
 
@@ -195,7 +195,7 @@ def _reweighted(pair: Pair, state: Floats, tukey: bool) -> float:
     for k in range(len(q)):
         size = abs(q[k]) / scale
         if tukey:
-            ratio = min(size / _TUKEY, 1.0)
+            ratio = min(size / TUKEY, 1.0)
             weight = (1.0 - ratio * ratio) * (1.0 - ratio * ratio)
         else:
             weight = min(1.0, _HUBER / size)

@@ -15,6 +15,7 @@ from posstats.errors import ConvergenceError, GeometryError
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem, ObservationGroup
 from posstats.numerics.bundle.system import BundleSystem, Equations, State
 from posstats.numerics.solvers.arrow import SelectedInverse
+from posstats.numerics.solvers.robust import huber_weights, kept_weights, median_scale
 
 MAX_ITERATIONS = 100
 _SETTLED = 1e-4  # length of the next step, in standard deviations of all unknowns together
@@ -25,10 +26,6 @@ _MOST_DAMPING = 1e8
 # Parts of a step, and whether points are intersected anew after it: turns of a weakly held block
 # by degrees are no straight lines, and damping would take hundreds of steps.
 _TRIALS = ((1.0, False), (1.0, True), (0.25, True))
-_HUBER = 1.345
-_REJECTION = 3.5
-_NORMAL_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
-_SMALLEST_SCALE = 0.01  # of the stated image accuracy: perfect data must not break the weights
 
 
 def adjust(
@@ -133,23 +130,14 @@ class _Iteration:
             self.progress(self.count, MAX_ITERATIONS)
 
 
-def _scale(standardised: Floats) -> float:
-    """Scale of standardised residuals (m, 2), from their median."""
-    spread = _NORMAL_MAD * float(np.nanmedian(np.abs(standardised)))
-    return max(spread, _SMALLEST_SCALE)
-
-
 def _huber(standardised: Floats) -> Floats:
     """(m,) Huber's weights of rays by the larger of their standardised residuals (m, 2)."""
-    limit = _HUBER * _scale(standardised)
-    weight: Floats = limit / np.maximum(_largest(standardised), limit)
-    return weight
+    return huber_weights(_largest(standardised), median_scale(standardised))
 
 
 def _kept(standardised: Floats) -> Floats:
     """(m,) 1, or 0 of blunders."""
-    limit = _REJECTION * _scale(standardised)
-    return np.where(_largest(standardised) <= limit, 1.0, 0.0)
+    return kept_weights(_largest(standardised), median_scale(standardised))
 
 
 def _largest(standardised: Floats) -> Floats:

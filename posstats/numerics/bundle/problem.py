@@ -1,8 +1,9 @@
 """What a bundle block adjustment adjusts, and what comes out: frozen arrays, no files, no words."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -30,6 +31,10 @@ class Control:
     point: Ints
     position_m: Floats
     covariance_m2: Floats
+
+    def subset(self, rows: Ints | slice) -> Self:
+        """The points of these rows."""
+        return replace(self, **{name: values[rows] for name, values in vars(self).items()})
 
 
 @dataclass(frozen=True, eq=False)

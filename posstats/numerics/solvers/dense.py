@@ -37,7 +37,7 @@ def mirrored(matrix: Floats) -> Floats:
     return matrix
 
 
-def factorised(normals: Floats) -> NormalsFactor:
+def normals_factor(normals: Floats) -> NormalsFactor:
     """Factorise normal equations (u, u), of which the upper triangle is read.
 
     The factor takes the place of the normal equations: they are large.
@@ -55,8 +55,8 @@ def factorised(normals: Floats) -> NormalsFactor:
 
 
 def inverted(normals: Floats) -> Floats:
-    """N^-1 (u, u), both triangles, in place of N; upper triangle read, errors of `factorised`."""
-    inverse, _ = lapack.dpotri(factorised(normals).lower, lower=1, overwrite_c=1)
+    """N^-1 (u, u), both triangles, in place of N; of N the upper, as in `normals_factor`."""
+    inverse, _ = lapack.dpotri(normals_factor(normals).lower, lower=1, overwrite_c=1)
     return mirrored(np.asarray(inverse, dtype=float).T)
 
 

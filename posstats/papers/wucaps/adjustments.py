@@ -9,13 +9,14 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
-from posstats.adjustment.settings import AdjustmentSettings, DriftPriors, additional_parameters
 from posstats.adjustment.significance import parameter_tests
-from posstats.arrays import Bools, Ints
-from posstats.block.model import Block, GroundPoints, Orientations
+from posstats.arrays import Bools
+from posstats.block.model import Block, Orientations
+from posstats.contract.choices import ControlSubset
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     differences,
@@ -24,13 +25,13 @@ from posstats.geometry.ground.check_points import (
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
+from posstats.settings import AdjustmentSettings, DriftPriors
 
-Control = Literal["none", "centre", "corners", "all"]
 Unknowns = Literal["none", "weighted", "free"]
 """Of the POS: no systematic errors; boresight, and shifts and drifts of every strip, as weighted
 observations; these shifts and drifts as free unknowns (which hold the boresight)."""
 
-CONTROLS: tuple[Control, ...] = get_args(Control)
+CONTROLS: tuple[ControlSubset, ...] = get_args(ControlSubset)
 _FREE = DriftPriors(None, None, None, None, None)
 
 
@@ -61,23 +62,19 @@ class AdjustedBlock:
         return tuple(dict.fromkeys(test.name for test in tests if not test.determined))
 
 
-def control_points(block: Block, control: Control) -> Bools:
+def control_points(block: Block, control: ControlSubset) -> Bools:
     """(g,) which ground points take part; check points never do."""
     surveyed = block.ground_points
     if surveyed is None:
         return np.empty(0, dtype=bool)
     candidates = np.flatnonzero(~surveyed.is_check)
-    without_checks = replace(block, ground_points=_some(surveyed, candidates))
+    without_checks = replace(block, ground_points=surveyed.subset(candidates))
     chosen = np.zeros(len(surveyed), dtype=bool)
     chosen[candidates] = chosen_control(without_checks, control)
     return chosen
 
 
-def _some(points: GroundPoints, rows: Ints) -> GroundPoints:
-    return GroundPoints(**{name: values[rows] for name, values in vars(points).items()})
-
-
-def adjusted_block(block: Block, control: Control, unknowns: Unknowns) -> AdjustedBlock:
+def adjusted_block(block: Block, control: ControlSubset, unknowns: Unknowns) -> AdjustedBlock:
     """Adjust a block and intersect its check points.
 
     Raises

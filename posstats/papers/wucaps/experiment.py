@@ -8,20 +8,21 @@ import numpy as np
 
 from posstats.adjustment.calibration import Calibration, apply_calibration, calibration_of
 from posstats.analysis.rules import Decision
-from posstats.analysis.steps import Analysis, Settings, analyse
+from posstats.analysis.steps import Analysis, analyse
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import PAPER_SEED, ControlSubset
 from posstats.errors import UndeterminedError
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.wucaps.adjustments import (
     CONTROLS,
-    Control,
     Unknowns,
     adjusted_block,
     pos_parameters,
 )
 from posstats.papers.wucaps.measures import Measures, measured
-from posstats.papers.wucaps.situations import DEFAULT_SEED, Flights, Situation, simulated
+from posstats.papers.wucaps.situations import Flights, Situation, simulated
+from posstats.settings import Settings
 
 Method = Literal[
     "pos",
@@ -71,7 +72,7 @@ class Row:
     """
 
     method: Method
-    control: Control | None
+    control: ControlSubset | None
     measures: Measures | None
     sigma0: float | None = None
     undetermined: tuple[str, ...] = ()
@@ -102,11 +103,11 @@ class SituationRun:
     relative_mm: float
     rows: tuple[Row, ...]
 
-    def row(self, method: Method, control: Control | None = None) -> Row:
+    def row(self, method: Method, control: ControlSubset | None = None) -> Row:
         """The row of a method and its control."""
         return next(r for r in self.rows if (r.method, r.control) == (method, control))
 
-    def measures(self, method: Method, control: Control | None = None) -> Measures:
+    def measures(self, method: Method, control: ControlSubset | None = None) -> Measures:
         """The measures of a method that gave an orientation."""
         found = self.row(method, control).measures
         if found is None:
@@ -116,7 +117,7 @@ class SituationRun:
 
 def run_situation(
     situation: Situation,
-    seed: int = DEFAULT_SEED,
+    seed: int = PAPER_SEED,
     *,
     progress: Callable[[float], object] | None = None,
 ) -> SituationRun:
@@ -180,7 +181,7 @@ def _without_strip_lines(analysis: Analysis) -> Orientations:
     ground = analysis.frames[0]
     pos = analysis.block.orientations
     lines = tuple(
-        Decision(angle, "ground", strip, True, "linear", "ols", "all", "")
+        Decision(angle, "ground", strip, True, "linear", "ols", "all")
         for strip in pos.strips
         for angle in ANGLE_NAMES
     )
@@ -198,7 +199,7 @@ def _bundles(flights: Flights, models: StereoModels, calibration: Calibration) -
 
 
 def _bundle(
-    block: Block, models: StereoModels, method: Method, control: Control, unknowns: Unknowns
+    block: Block, models: StereoModels, method: Method, control: ControlSubset, unknowns: Unknowns
 ) -> Row:
     try:
         result = adjusted_block(block, control, unknowns)

@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass
 
+from posstats.contract.choices import ControlSubset
 from posstats.geometry.stereo.parallax import NOTICEABLE
-from posstats.papers.wucaps.adjustments import CONTROLS, Control
+from posstats.papers.wucaps.adjustments import CONTROLS
 from posstats.papers.wucaps.experiment import SituationRun
 from posstats.papers.wucaps.situations import Situation
 
-RECOMMENDED: dict[Situation, Control] = {"flat": "corners", "mountain": "centre"}
+RECOMMENDED: dict[Situation, ControlSubset] = {"flat": "corners", "mountain": "centre"}
 """The control points that the paper recommends."""
-LESS: dict[Situation, Control] = {"flat": "centre", "mountain": "none"}
+LESS: dict[Situation, ControlSubset] = {"flat": "centre", "mountain": "none"}
 """The next smaller choice."""
 
 MOST_HORIZONTAL = 2.0

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from posstats.papers.wucaps.adjustments import CONTROLS, Control, control_points
+from posstats.contract.choices import ControlSubset
+from posstats.papers.wucaps.adjustments import CONTROLS, control_points
 from posstats.papers.wucaps.experiment import METHODS as ALL_METHODS
 from posstats.papers.wucaps.experiment import Method, Row, SituationRun
 from posstats.papers.wucaps.findings import RECOMMENDED
@@ -17,7 +18,7 @@ from ...document.drawing import Drawing
 from ...figures import style
 from .words import CONTROL, METHODS, SITUATIONS
 
-_LOOK: dict[Control | None, tuple[str, str]] = {
+_LOOK: dict[ControlSubset | None, tuple[str, str]] = {
     None: (style.BLACK, "o"),
     "none": (style.VERMILLION, "v"),
     "centre": (style.ORANGE, "D"),
@@ -54,7 +55,7 @@ def _plan(axis: Axes, run: SituationRun) -> None:
     axis.plot(*centres[:, :2].T, label="projection centre", **style.dots(style.GREY, 1.8))
     axis.plot(*ground[surveyed.is_check, :2].T, ls="", marker="x", ms=3.0, mew=0.7,
               color=style.SKY, label="check point")  # fmt: skip
-    kinds: tuple[tuple[Control, str, bool], ...] = (
+    kinds: tuple[tuple[ControlSubset, str, bool], ...] = (
         ("all", "control point", False),
         ("corners", "corner", True),
         ("centre", "centre", True),

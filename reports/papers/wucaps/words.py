@@ -1,6 +1,6 @@
 """How the report on the second paper calls its situations, methods and control points."""
 
-from posstats.papers.wucaps.adjustments import Control
+from posstats.contract.choices import ControlSubset
 from posstats.papers.wucaps.experiment import Method
 from posstats.papers.wucaps.situations import Situation
 
@@ -27,7 +27,7 @@ METHODS: dict[Method, str] = {
     "free": "bundle, drifts free",
     "reference": "bundle, no systematic errors",
 }
-CONTROL: dict[Control, str] = {
+CONTROL: dict[ControlSubset, str] = {
     "none": "none",
     "centre": "one, centre",
     "corners": "four, corners",

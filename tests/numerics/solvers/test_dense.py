@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from posstats.errors import GeometryError
-from posstats.numerics.solvers.dense import factorised, inverted, propagated
+from posstats.numerics.solvers.dense import inverted, normals_factor, propagated
 
 
 def system(seed=0):
@@ -23,7 +23,7 @@ def propagation_of(design, mixing, weight, prior):
 def test_solution_and_inverse_are_those_of_the_upper_triangle():
     design, _, weight, prior = system()
     normals = design.T @ (weight[:, None] * design) + np.diag(prior)
-    inverse, factor = inverted(np.triu(normals)), factorised(np.triu(normals))
+    inverse, factor = inverted(np.triu(normals)), normals_factor(np.triu(normals))
     np.testing.assert_allclose(inverse, np.linalg.inv(normals), rtol=1e-12)
     np.testing.assert_allclose(factor.solve(normals @ np.arange(4.0)), np.arange(4.0), atol=1e-13)
 
@@ -31,7 +31,7 @@ def test_solution_and_inverse_are_those_of_the_upper_triangle():
 @pytest.mark.parametrize("diagonal", [[1.0, 0.0], [1.0, -1.0], [1.0, np.nan]])
 def test_singular_normals_are_an_error(diagonal):
     with pytest.raises(GeometryError, match="singular"):
-        factorised(np.diag(diagonal))
+        normals_factor(np.diag(diagonal))
 
 
 def test_propagation_and_variance_factor_agree_with_simulation():

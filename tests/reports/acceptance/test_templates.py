@@ -1,6 +1,8 @@
 """A user's templates: single blocks replaced, in a sandbox, on a page that loads nothing."""
 
 import base64
+import re
+from dataclasses import replace
 
 import acceptance_values as values
 import pytest
@@ -26,8 +28,9 @@ def test_a_logo_and_a_letterhead_replace_ours():
     assert 'class="logo"' not in page()
     assert 'src="data:image/png;base64,' in page(logo__png=PNG)
     assert 'src="data:image/svg+xml;base64,' in page(logo__svg=SVG)
-    text = page(letterhead__html__j2="<p>Survey Ltd for {{ report.document_id }}</p>")
-    assert "<p>Survey Ltd for PA-3F2A-91C0-77DE</p>" in text
+    text = page(letterhead__html__j2="<p>{{ report.delivered }}, {{ report.document_id }}</p>")
+    block = CASE.block.name
+    assert re.search(rf"<p>{block} .*, PA-3F2A-91C0-77DE</p>", text)
 
 
 def test_a_whole_template_extends_ours_and_a_style_sheet_adds_to_it():
@@ -43,8 +46,7 @@ def test_a_whole_template_extends_ours_and_a_style_sheet_adds_to_it():
 
 
 def test_data_are_escaped_in_a_users_template_too():
-    hostile = values.acceptance(12)
-    hostile["contract"]["title"] = values.HOSTILE
+    hostile = replace(CASE, contract=replace(CASE.contract, title=values.HOSTILE))
     files = {"letterhead.html.j2": b"<p>{{ report.subject }}</p>"}
     assert "script" not in read(render_document(hostile, RESULTS, files)).tags
 

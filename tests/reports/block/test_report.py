@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 from report_results import area_results, coarse_results, with_rows
 
 from posstats.contract.survey import InputFile
@@ -255,7 +255,6 @@ def _failing_import(missing):
     return guarded
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_sees_no_error_no_request_and_no_sideways_scrolling(
     page, coarse_page, tmp_path, width

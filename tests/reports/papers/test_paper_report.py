@@ -6,14 +6,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.block.image_pairs import stereo_models
 from posstats.contract.files import read_json
@@ -27,16 +26,18 @@ from posstats.reports.commands import paper as paper_command
 from posstats.reports.commands.cli import cli
 from posstats.reports.output.staged_folder import staged_folder
 from posstats.reports.papers.drift import areas as paper_areas
+from posstats.reports.papers.drift import figures as paper_figures
 from posstats.synthetic import simulate
 
 COMMAND = Path(sys.executable).with_name("posstats")
+EPOCH = "1750000000"
 
 # One worker runs the experiment for all tests of this file.
 pytestmark = pytest.mark.xdist_group("paper")
 
 
 def run_paper(out: Path, *options: str) -> str:
-    environment = os.environ | {"SOURCE_DATE_EPOCH": "1750000000"}
+    environment = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
     command = [COMMAND, "paper", "--out", out, *options]
     run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
@@ -62,13 +63,14 @@ def comparison(folder):
 
 
 @pytest.fixture(scope="module")
-def findings(results):
-    found = {}
-    for area in AREAS:
-        block = simulate(area_scenario(area), area_seed(1, area))
-        causes = true_causes(block, stereo_models(block))
-        found[area] = find(area, results[area], area_scenario(area), causes)
-    return found
+def causes():
+    blocks = {area: simulate(area_scenario(area), area_seed(1, area)) for area in AREAS}
+    return {area: true_causes(block, stereo_models(block)) for area, block in blocks.items()}
+
+
+@pytest.fixture(scope="module")
+def findings(results, causes):
+    return {a: find(a, results[a], area_scenario(a), causes[a]) for a in AREAS}
 
 
 @pytest.fixture(scope="module")
@@ -197,7 +199,6 @@ def test_numbers_of_the_page_are_readable(page):
     assert not re.search(r"\d\.\d{6,}", text)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_shows_the_page_without_fault(page, tmp_path, width):
     assert_shown_without_fault(page, width, tmp_path)
@@ -226,16 +227,32 @@ def test_the_contents_name_the_page_of_every_section(pages):
         assert heading.search(pages[int(page_number) - 1]), title
 
 
-def test_the_same_seed_and_date_give_the_same_bytes(folder, tmp_path):
-    run_paper(tmp_path / "again")
-    files = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    assert files == sorted(
-        path.relative_to(tmp_path / "again")
-        for path in (tmp_path / "again").rglob("*")
-        if path.is_file()
-    )
-    for path in files:
-        assert (folder / path).read_bytes() == (tmp_path / "again" / path).read_bytes(), path
+def files_of(folder: Path) -> dict[Path, bytes]:
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_the_same_seed_and_date_give_the_same_files_of_an_area(folder, comparison, tmp_path):
+    """The smallest area, computed anew in this process."""
+    values, _ = paper_areas._analysed(3, 1, tmp_path, comparison["created"])
+    paper_areas._written(3, values, tmp_path)
+    assert files_of(tmp_path) == files_of(folder / "area3")
+
+
+def test_the_same_numbers_and_date_give_the_same_pages(
+    folder, results, causes, tmp_path, monkeypatch
+):
+    areas = {
+        area: paper_areas.AreaOutput(
+            results[area], causes[area], paper_figures.draw_area(area, results[area])
+        )
+        for area in AREAS
+    }
+    monkeypatch.setattr(paper_command, "run_areas", lambda *_: areas)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    list(paper_command.reproduce_paper(tmp_path, 1, pdf=True))
+    made = files_of(tmp_path)
+    assert {str(name) for name in made} == {"comparison.json", "paper.html", "paper.pdf"}
+    assert made.items() <= files_of(folder).items()
 
 
 def test_a_table_row_is_never_parted_from_its_ratio(pages):
@@ -305,15 +322,38 @@ def test_an_outdated_pdf_does_not_stay_beside_a_new_page(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.pdf", "paper.html"]
 
 
+HELD = """
+import os, signal, sys
+from posstats.reports.commands.cli import main
+from posstats.reports.papers.drift import areas
+
+told = int(sys.argv.pop(1))
+
+def wait(*_):
+    os.write(told, b".")
+    signal.pause()
+
+areas._analysed = areas._reported = wait
+main()
+"""
+
+
 def test_an_interrupt_ends_the_workers_and_leaves_nothing(tmp_path):
+    """Two workers and the process that waits for them say so through a pipe, and stay there."""
+    ours, theirs = os.pipe()
     process = subprocess.Popen(
-        [COMMAND, "paper", "--out", tmp_path / "out"], stderr=subprocess.PIPE
+        [sys.executable, "-c", HELD, str(theirs), "paper", "--out", tmp_path / "out"],
+        pass_fds=(theirs,),
+        stderr=subprocess.PIPE,
+        text=True,
     )
-    while not list(tmp_path.glob(".posstats-*")):
-        time.sleep(0.1)
-    time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=20)
+    os.close(theirs)
+    with os.fdopen(ours, "rb") as said:
+        assert said.read(3) == b"..."
+        assert list(tmp_path.glob(".posstats-*"))
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate()
+        assert said.read() == b""  # nobody holds the other end any more
     assert process.returncode == 1
-    assert told.decode().strip() == "Aborted!"
+    assert told.strip() == "Aborted!"
     assert list(tmp_path.iterdir()) == []

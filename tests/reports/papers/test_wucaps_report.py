@@ -1,37 +1,48 @@
 """`posstats wucaps` as a whole: numbers that it has to reach, pages, files, bytes."""
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from page_reading import CHROMIUM, assert_shown_without_fault, pdf_pages, plain, read
+from click.testing import CliRunner
+from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.seeds import repeated
 from posstats.papers.wucaps.situations import SITUATIONS
-
-COMMAND = Path(sys.executable).with_name("posstats")
+from posstats.reports.commands import wucaps as wucaps_command
+from posstats.reports.commands.cli import cli
+from posstats.reports.commands.wucaps import SituationRun, run_situation
 
 # One worker runs the experiment for all tests of this file.
 pytestmark = pytest.mark.xdist_group("wucaps")
 
 
-def run_wucaps(out: Path, *options: str) -> str:
-    environment = os.environ | {"SOURCE_DATE_EPOCH": "1750000000"}
-    command = [COMMAND, "wucaps", "--out", out, *options]
-    run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stderr
-    return run.stdout
+@pytest.fixture(scope="module")
+def runs() -> dict[str, SituationRun]:
+    """What `folder` computed."""
+    return {}
+
+
+def run_wucaps(out: Path, run_one, *options: str) -> str:
+    """The command in this process, with a function that computes a situation."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1750000000")
+        patch.setattr(wucaps_command, "run_situation", run_one)
+        run = CliRunner().invoke(cli, ["wucaps", "--out", str(out), *options])
+    assert run.exit_code == 0, run.output
+    return run.output
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
+def folder(tmp_path_factory, runs) -> Path:
+    def run_one(situation, *arguments, **options):
+        runs[situation] = run_situation(situation, *arguments, **options)
+        return runs[situation]
+
     out = tmp_path_factory.mktemp("wucaps") / "out"
-    told = run_wucaps(out)
+    told = run_wucaps(out, run_one)
     assert "5. No calibration field is needed: holds" in told
     return out
 
@@ -136,7 +147,6 @@ def test_numbers_of_the_page_are_readable(page):
     assert not re.search(r"(?<!wucaps-)\bmountain\b", text, re.IGNORECASE)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [400, 1280])
 def test_a_browser_shows_the_page_without_fault(page, tmp_path, width):
     assert_shown_without_fault(page, width, tmp_path)
@@ -149,9 +159,17 @@ def test_every_pdf_page_is_numbered_and_marked_as_simulated(pages):
         assert "Simulated data" in text
 
 
-def test_the_same_seed_and_date_give_the_same_bytes(folder, tmp_path):
-    """The page and the numbers; that equal pages give equal PDFs is tested for posstats paper."""
-    run_wucaps(tmp_path / "again", "--no-pdf")
+def test_the_same_seed_and_date_give_the_same_bytes(folder, runs, tmp_path):
+    """One situation is computed anew; that equal pages give equal PDFs is tested for the other."""
+    anew = []
+
+    def run_one(situation, *arguments, **options):
+        if anew:
+            return runs[situation]
+        anew.append(situation)
+        return run_situation(situation, *arguments, **options)
+
+    run_wucaps(tmp_path / "again", run_one, "--no-pdf")
     assert not (tmp_path / "again" / "wucaps.pdf").exists()
     for name in ("wucaps.html", "wucaps.json"):
         assert (folder / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name

@@ -1,0 +1,71 @@
+"""The English sentences of ``adjustment.json``, and of a block that is not determined."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from posstats.adjustment.defects import Defect
+from posstats.adjustment.undetermined import UndeterminedBlockError
+from posstats.contract.adjustment import AdjustmentResults
+from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
+
+from ..document import format as fmt
+from .words import Words, words_in
+
+_SHOWN = 6
+
+
+def with_words(results: AdjustmentResults) -> AdjustmentResults:
+    """The results with their reasons, remedies and warnings in English."""
+    words = words_in("en")
+    return replace(
+        results,
+        observability=tuple(
+            replace(
+                each,
+                reason=words.notice(each.reason_notice),
+                remedy=words.notice(each.remedy_notice),
+            )
+            for each in results.observability
+        ),
+        warnings=tuple(words.notice(each, plain=True) for each in results.notices),
+    )
+
+
+def not_determined(error: UndeterminedBlockError) -> str:
+    """What is open, why, and what would help, in English."""
+    words = words_in("en")
+    return words.sentences(_not_determined(words, error))
+
+
+def _not_determined(words: Words, error: UndeterminedBlockError) -> Iterator[str]:
+    for defect in error.defects:
+        reason, remedy = words.notice(defect.reason), words.notice(defect.remedy)
+        subject = _subject(words, defect)
+        yield words.text("defect.sentence", subject=subject, reason=reason, remedy=remedy)
+    for part in error.parts:
+        names = words.text("list.between").join(part.names)
+        yield words.text("defect.part", names=names, reason=words.notice(part.reason_notice))
+
+
+def _subject(words: Words, defect: Defect) -> str:
+    if defect.parameters:
+        called = [_called(words, each) for each in defect.parameters]
+        return words.counted("defect.parameters", len(called), names=_listed(words, called))
+    if not defect.images:
+        return words.text("defect.all_images")
+    names = _listed(words, defect.images)
+    return words.counted("defect.images", len(defect.images), names=names)
+
+
+def _called(words: Words, parameter: CommonParameter) -> str:
+    if parameter.scope == BLOCK:
+        return parameter.name
+    return words.text("defect.of_scope", name=parameter.name, scope=parameter.scope)
+
+
+def _listed(words: Words, names: Sequence[str]) -> str:
+    """Names, no more of them than can be read."""
+    shown = list(names[:_SHOWN])
+    if len(names) > _SHOWN:
+        shown.append(words.text("list.more", n=fmt.count(len(names) - _SHOWN)))
+    return words.joined(shown)
