@@ -9,7 +9,6 @@ from small_blocks import Layout, observed_block, true_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
 from posstats.block.model import GroundPoints
-from posstats.contract.files import as_values
 from posstats.numerics.kernels.rotation import rotation_from_angles
 
 ERROR_RAD = np.array([0.03, -0.02, 0.05])
@@ -31,7 +30,7 @@ def adjusted():
 
 @pytest.fixture(scope="module")
 def values(adjusted):
-    return as_values(adjustment_results(adjusted))
+    return adjustment_results(adjusted)
 
 
 def measured_and_computed(adjustment):
