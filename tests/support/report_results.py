@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
+from posstats.contract.notice import listing
 from posstats.contract.results import (
     AnalysedBlock,
     AnalysisSettings,
@@ -26,6 +27,9 @@ from posstats.contract.results import (
     Verdict,
 )
 from posstats.contract.survey import ImagePlace, InputFile
+from posstats.reports.block.wording import warnings
+
+NOTICES = listing("models_with_few_points", ["3_07 - 3_08"], n_needed=6)
 
 PIXEL_MM = 0.012
 ANGLES = ("omega", "phi", "kappa")
@@ -82,11 +86,17 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> Resul
         observability=(
             Observability(scope="block", images=()),
             *(
-                Observability(scope=s, unobservable=("rotation about the base axis",), images=())
+                Observability(
+                    scope=s,
+                    unobservable=("rotation about the base axis",),
+                    rotations=("about_base_axis",),
+                    images=(),
+                )
                 for s in strips
             ),
         ),
-        warnings=("Strip 3: image 3_07 has fewer than 6 points in common with its neighbour.",),
+        warnings=warnings(NOTICES),
+        notices=NOTICES,
     )
 
 
