@@ -21,9 +21,9 @@ from posstats.adjustment import Adjustment, AdjustmentSettings, adjust_block
 from posstats.adjustment.additional_parameters import additional_parameters
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.block.model import Accuracy, Block, GroundPoints, Orientations
+from posstats.contract.choices import DriftScope, SelfCalibration
 from posstats.geometry.ground.check_points import surveyed_check_points
 from posstats.numerics.kernels.rotation import angles_from_rotation, rotation_from_angles, wrapped
-from posstats.settings import DriftScope, SelfCalibration
 from posstats.synthetic import load_scenario, simulate
 
 _Floats = NDArray[np.float64]

@@ -6,7 +6,7 @@ is never changed. Exits with 1 if a mutant survives, if its text is not found ex
 stale), or if it does not even start; with 2 if tests fail without any mutant.
 
     python benchmarks/mutants.py                  all
-    python benchmarks/mutants.py margin arrow     those with one of these words in their names
+    python benchmarks/mutants.py margin reports/  those with one of these in their name or file
 """
 
 import argparse
@@ -99,8 +99,8 @@ def run_tests(tree: Path, tests: Sequence[str], most_s: float | None = MOST_S) -
         )
     except subprocess.TimeoutExpired:
         return None
-    if done.returncode not in (PASSED, FAILED):
-        print(done.stdout.decode()[-2000:], file=sys.stderr)
+    if done.returncode not in (PASSED, FAILED) or (done.returncode == FAILED and most_s is None):
+        print(done.stdout.decode()[-3000:], file=sys.stderr)
     return done.returncode
 
 
@@ -110,7 +110,7 @@ def judge(mutant: Mutant, sound: Path) -> str:
     It is put into a copy of the sound tree. Times of files are kept: kernels that were compiled
     there stay valid for files that do not change, and for no others.
     """
-    if (n := mutant.count()) != 1:
+    if (n := mutant.count(sound)) != 1:
         return f"STALE ({n} times in {mutant.file})"
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
         tree = Path(shutil.copytree(sound, Path(folder, "tree"), symlinks=True))
@@ -136,12 +136,14 @@ def is_sound(tree: Path, mutants: Iterable[Mutant]) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("words", nargs="*", help="only mutants with one of these in their names")
+    parser.add_argument(
+        "words", nargs="*", help="only those with one of these in their name or file"
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
     asked = parser.parse_args()
     mutants = [
         each for each in read()
-        if not asked.words or any(word in each.name for word in asked.words)
+        if not asked.words or any(word in f"{each.name} {each.file}" for word in asked.words)
     ]  # fmt: skip
     killed = 0
     with tempfile.TemporaryDirectory(prefix="mutant-none-") as folder:

@@ -1,41 +1,27 @@
-"""What a user chooses: choices, defaults and their check, said once.
-
-The library, the command line and the files' contract take them from here. No NumPy, so that
-``posstats --help`` starts fast.
-"""
+"""What a user chooses for an analysis or an adjustment, checked; no NumPy."""
 
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
-from typing import Literal, get_args
+from typing import get_args
 
+from posstats.contract.choices import (
+    DEFAULT_DRIFT,
+    DEFAULT_ERRORS,
+    DEFAULT_FRAME,
+    DEFAULT_ROBUST,
+    DEFAULT_RULES,
+    DEFAULT_SCOPE,
+    DEFAULT_SELF_CALIBRATION,
+    AngleErrorSource,
+    ControlChoice,
+    DriftScope,
+    FrameChoice,
+    NamedControl,
+    Scope,
+    SelfCalibration,
+)
 from posstats.errors import PosstatsError
-
-RuleSetName = Literal["paper", "strict"]
-"""Rule sets that come with posstats."""
-ScenarioName = Literal["area1", "area1-small", "area2", "area3", "wucaps-flat", "wucaps-mountain"]
-"""Scenarios that come with posstats."""
-Scope = Literal["block", "strip"]
-AngleErrorSource = Literal["coplanarity", "bundle", "adjusted"]
-Frame = Literal["ground", "camera"]
-FrameChoice = Literal[Frame, "auto"]
-Form = Literal["none", "constant", "linear"]
-FitKind = Literal["ols", "gls"]
-
-ControlSubset = Literal["none", "centre", "corners", "all"]
-NamedControl = Literal["roles", ControlSubset]
-ControlChoice = NamedControl | tuple[str, ...]
-DriftScope = Literal["none", Scope]
-SelfCalibration = Literal["none", "bauer", "brown"]
-
-TerrainKind = Literal["flat", "mountain"]
-JudgedOrientation = Literal["bundle", "adjusted", "selected", "pos"]
-"""What an acceptance can judge: the first that the results hold, unless one is named."""
-Language = Literal["en", "zh"]
-"""Of documents."""
-
-PAPER_SEED = 1
-"""Of the simulations that repeat a paper's experiment."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +43,11 @@ class Settings:
         Resist blunders in the tie points.
     """
 
-    rules: str | Path = "paper"
-    scope: Scope = "block"
-    errors: AngleErrorSource = "coplanarity"
-    frame: FrameChoice = "ground"
-    robust: bool = True
+    rules: str | Path = DEFAULT_RULES
+    scope: Scope = DEFAULT_SCOPE
+    errors: AngleErrorSource = DEFAULT_ERRORS
+    frame: FrameChoice = DEFAULT_FRAME
+    robust: bool = DEFAULT_ROBUST
 
     def __post_init__(self) -> None:
         _check(self, scope=Scope, errors=AngleErrorSource, frame=FrameChoice)
@@ -121,13 +107,13 @@ class AdjustmentSettings:
     """
 
     control: ControlChoice = "roles"
-    drift: DriftScope = "block"
-    self_calibration: SelfCalibration = "none"
+    drift: DriftScope = DEFAULT_DRIFT
+    self_calibration: SelfCalibration = DEFAULT_SELF_CALIBRATION
     camera: bool = False
     lever_arm: bool = False
     estimate_weights: bool = False
     drop_insignificant: bool = False
-    robust: bool = True
+    robust: bool = DEFAULT_ROBUST
     priors: DriftPriors = DriftPriors()
     bauer_radius_mm: float = 100.0
 

@@ -13,10 +13,10 @@ import numpy as np
 from posstats.acceptance.product import Product
 from posstats.arrays import Floats
 from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.choices import JudgedOrientation
 from posstats.contract.results import ModelParallax, Regression, Results
 from posstats.contract.survey import ImagePlace
 from posstats.errors import PosstatsError
-from posstats.settings import JudgedOrientation
 
 ORIENTATIONS: tuple[JudgedOrientation, ...] = get_args(JudgedOrientation)
 """What can be assessed; without a choice the first that the results hold. The order is that of

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
+from posstats.contract.choices import TerrainKind
 from posstats.formats.toml_document import Conflict
 from posstats.formats.toml_types import Count, Positive
-from posstats.settings import TerrainKind
 
 FORMULA_NAMES: Mapping[str, str] = MappingProxyType(
     {

@@ -8,7 +8,7 @@ from posstats.acceptance.product import Product
 from posstats.acceptance.profile_values import Date, Text
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
 from posstats.contract.acceptance import Exceeding, StatedComponent
-from posstats.settings import TerrainKind
+from posstats.contract.choices import TerrainKind
 
 __all__ = [
     "Contract",

@@ -22,10 +22,10 @@ from posstats.acceptance.profile_values import (
 )
 from posstats.acceptance.quantity_names import QUANTITIES
 from posstats.contract.acceptance import Exceeding, StatedComponent
+from posstats.contract.choices import TerrainKind
 from posstats.formats.toml_document import TomlDocument, open_toml
 from posstats.formats.toml_lines import Place
 from posstats.formats.toml_types import NEEDED, Count
-from posstats.settings import TerrainKind
 
 ANY_TERRAIN = "any"
 ALWAYS = "always"

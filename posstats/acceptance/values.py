@@ -35,13 +35,13 @@ from posstats.contract.acceptance import (
     UsedProfile,
 )
 from posstats.contract.check_points import CheckPointResidual
+from posstats.contract.choices import Language
 from posstats.contract.files import as_values
 from posstats.contract.notice import Notice
 from posstats.contract.record import plain, record
 from posstats.contract.results import Results
 from posstats.contract.survey import InputFile
 from posstats.contract.versions import versions
-from posstats.settings import Language
 from posstats.version import __version__
 
 _AXES: tuple[Axis, ...] = ("x", "y", "z")

@@ -3,6 +3,7 @@
 import numpy as np
 
 from posstats.block.model import Block
+from posstats.contract.choices import SelfCalibration
 from posstats.errors import PosstatsError
 from posstats.numerics.bundle.parameters import (
     BLOCK,
@@ -15,7 +16,7 @@ from posstats.numerics.bundle.parameters import (
     CommonParameter,
     drift_parameters,
 )
-from posstats.settings import AdjustmentSettings, SelfCalibration
+from posstats.settings import AdjustmentSettings
 
 _DEFORMATION: dict[SelfCalibration, tuple[str, ...]] = {
     "none": (),

@@ -8,8 +8,8 @@ from scipy.optimize import linear_sum_assignment
 
 from posstats.arrays import Bools, Floats, Ints
 from posstats.block.model import Block, GroundPoints
+from posstats.contract.choices import ControlChoice
 from posstats.errors import PosstatsError
-from posstats.settings import ControlChoice
 
 
 def chosen_control(block: Block, choice: ControlChoice) -> Bools:

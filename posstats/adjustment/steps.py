@@ -41,6 +41,7 @@ from posstats.adjustment.weights import EstimatedWeights, estimate_weights
 from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.contract.adjustment import Undetermined
+from posstats.contract.choices import ControlChoice
 from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
@@ -50,7 +51,7 @@ from posstats.geometry.ground.check_points import (
 )
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.settings import AdjustmentSettings, ControlChoice
+from posstats.settings import AdjustmentSettings
 from posstats.statistics.global_test import GlobalTest, global_test
 
 Progress = Callable[[str, float], object]

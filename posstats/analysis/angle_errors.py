@@ -22,6 +22,7 @@ from posstats.analysis.observability import (
 from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.block.image_pairs import MIN_MODEL_POINTS, StereoModels, cross_strip_pairs
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import AngleErrorSource, Frame
 from posstats.contract.notice import Notice, listing
 from posstats.errors import GeometryError
 from posstats.geometry.coplanarity.adjustment import Priors, adjust_coplanarity
@@ -34,7 +35,6 @@ from posstats.numerics.kernels.rotation import (
     wrapped,
 )
 from posstats.numerics.solvers.weak_prior import weak_prior_rad
-from posstats.settings import AngleErrorSource, Frame
 
 _SHOWN = 10
 _SMALL_ANGLE_RAD = 1e-3

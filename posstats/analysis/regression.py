@@ -8,9 +8,9 @@ import numpy as np
 
 from posstats.arrays import Bools, Floats, Ids
 from posstats.block.model import BLOCK_SCOPE
+from posstats.contract.choices import FitKind
 from posstats.contract.notice import Notice
 from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
-from posstats.settings import FitKind
 from posstats.statistics.drift import (
     ConstantFit,
     DriftFit,

@@ -15,12 +15,12 @@ from posstats.analysis.regression import (
     ConstantFit,
     DriftFit,
 )
+from posstats.contract.choices import FitKind, Form, Scope
 from posstats.contract.notice import Notice, Value
 from posstats.errors import BlockFormatError, PosstatsError
 from posstats.formats.hints import nearest
 from posstats.formats.toml_document import open_toml
 from posstats.formats.toml_types import Check, repeated
-from posstats.settings import FitKind, Form, Scope
 from posstats.statistics.holm import holm
 
 

@@ -21,13 +21,14 @@ from posstats.arrays import Floats
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
 from posstats.block.turned import corrected
+from posstats.contract.choices import Scope
 from posstats.contract.notice import Notice
 from posstats.errors import PosstatsError
 from posstats.geometry.ground.check_points import CheckPointResiduals, check_point_residuals
 from posstats.geometry.stereo.parallax import model_rms_px
 from posstats.geometry.stereo.relative_orientation import Method, RelativeOrientation, orient
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
-from posstats.settings import Scope, Settings
+from posstats.settings import Settings
 
 Progress = Callable[[str, float], object]
 

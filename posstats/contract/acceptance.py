@@ -10,10 +10,10 @@ from typing import Annotated, Literal
 
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointDifference
+from posstats.contract.choices import JudgedOrientation, Language, TerrainKind
 from posstats.contract.notice import Notice, Value
 from posstats.contract.results import AnalysedBlock, AnalysisSettings
 from posstats.contract.survey import InputFile
-from posstats.settings import JudgedOrientation, Language, TerrainKind
 
 SCHEMA = "posstats-acceptance/1"
 

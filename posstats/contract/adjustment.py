@@ -10,9 +10,9 @@ from typing import Annotated, Literal
 
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
+from posstats.contract.choices import ControlChoice, DriftScope, SelfCalibration
 from posstats.contract.notice import Notice
 from posstats.contract.survey import BlockSummary, ImagePlace
-from posstats.settings import ControlChoice, DriftScope, SelfCalibration
 
 SCHEMA = "posstats-adjustment/1"
 

@@ -13,7 +13,7 @@ from posstats.errors import PosstatsError
 
 _LONGEST = 60
 _MISSING = re.compile(r"Object missing required field `(.+)`")
-_MISMATCH = re.compile(r"Expected `(.+?)`( of length \d+)?")
+_EXPECTED = re.compile(r"Expected `(.+?)`( of length \d+)?")
 _STEP = re.compile(r"([^.\[\]]+)(?=[.\[]|$)|\[(?:(\d+)|\.\.\.)\]")
 _TYPES = {
     "float": "a number",
@@ -80,7 +80,8 @@ def from_values(values: object, kind: type[D], name: str) -> D:
     try:
         return msgspec.convert(values, kind)
     except msgspec.ValidationError as error:
-        raise PosstatsError(f"{name}, {_in_words(str(error), values)}") from error
+        place, found, wanted = _mismatch(str(error), values)
+        raise PosstatsError(f"{name}, {place}: found {found}, expected {wanted}") from error
 
 
 def read_json(path: Path, kind: type[D]) -> D:
@@ -88,16 +89,16 @@ def read_json(path: Path, kind: type[D]) -> D:
     return from_json(path.read_bytes(), kind, path.name)
 
 
-def _in_words(message: str, values: object) -> str:
+def _mismatch(message: str, values: object) -> tuple[str, str, str]:
     """Key, what was found and what was expected, of a message of msgspec."""
     what, _, place = message.partition(" - at `$")
     path = place.rstrip("`").lstrip(".")
     if missing := _MISSING.fullmatch(what):
-        return f"{path}{'.' if path else ''}{missing[1]}: found nothing, expected it"
+        return f"{path}{'.' if path else ''}{missing[1]}", "nothing", "it"
     found = _shown(_value_at(path, values))
-    if mismatch := _MISMATCH.match(what):
-        return f"{path}: found {found}, expected {_type_in_words(mismatch[1])}{mismatch[2] or ''}"
-    return f"{path}: found {found}, expected one of the words that are defined for it"
+    if expected := _EXPECTED.match(what):
+        return path, found, f"{_type_in_words(expected[1])}{expected[2] or ''}"
+    return path, found, "a known word"
 
 
 def _type_in_words(types: str) -> str:

@@ -9,10 +9,10 @@ from typing import Annotated, Literal
 
 from posstats.contract.about import about
 from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
+from posstats.contract.choices import AngleErrorSource, FitKind, Form, Frame, FrameChoice, Scope
 from posstats.contract.notice import Notice
 from posstats.contract.status import ModelStatus
 from posstats.contract.survey import BlockSummary, ImagePlace
-from posstats.settings import AngleErrorSource, FitKind, Form, Frame, FrameChoice, Scope
 
 SCHEMA = "posstats-results/1"
 

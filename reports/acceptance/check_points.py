@@ -10,12 +10,12 @@ from posstats.arrays import Floats
 from posstats.contract.acceptance import JudgedPoint
 from posstats.contract.survey import ImagePlace
 
-from ..block.plan_figures import images_behind
 from ..document import format as fmt
 from ..document.content import Content, Paragraph, Part, known
 from ..document.drawing import Drawing
 from ..document.table import Column, Table, count_column, text_column
 from ..figures import style
+from ..figures.difference_plan import images_behind
 from ..figures.plan_view import (
     PlanView,
     arrow_scale,

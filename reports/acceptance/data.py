@@ -19,9 +19,9 @@ from posstats.contract.acceptance import (
     AttachedFile,
     ChosenStatement,
 )
+from posstats.contract.choices import JudgedOrientation, Language
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
-from posstats.settings import JudgedOrientation, Language
 
 from ..archive.writing import Attachment
 from ..block.csv_files import write_tables

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from posstats.acceptance.evidence import model_parallax_px
+from posstats.contract.choices import JudgedOrientation
 from posstats.contract.results import ModelParallax, Results
-from posstats.settings import JudgedOrientation
 
 from ..block.bar_figures import Bars, bar_figure
 from ..block.view import strips_with_models

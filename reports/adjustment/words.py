@@ -1,5 +1,6 @@
 """The words of the report on an adjustment."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from posstats.contract.adjustment import AdditionalParameter, Element
@@ -48,18 +49,19 @@ class Words(document.Words):
         unit = unit_of(parameter.unit)
         return fmt.with_unit(unit.scaled(parameter.value), unit.name)
 
-    def notice(self, said: Notice, *, plain: bool = False) -> str:
-        """A notice in words; control points are counted, groups of observations named."""
-        n_control, groups = said.values.get("n_control"), said.values.get("groups")
-        if isinstance(n_control, int):
-            return self.of("notice", said.code, control=self._control(n_control))
-        if isinstance(groups, tuple):
-            named = self.text("list.between").join(self.of("weight", str(g)) for g in groups)
-            return self.of("notice", said.code, groups=named)
-        return super().notice(said, plain=plain)
+    def _written(self, said: Notice, name: str, plain: bool) -> str:
+        """A value of a notice; control points are counted, groups of observations named."""
+        value = said.values[name]
+        if name == "n_control" and isinstance(value, int):
+            return self.counted("control.count", value) if value else self.text("control.no")
+        if name == "groups" and isinstance(value, tuple):
+            return self._row(self.of("weight", str(group)) for group in value)
+        if name == "parameters" and isinstance(value, tuple):
+            return self._row(map(str, value))
+        return super()._written(said, name, plain)
 
-    def _control(self, n: int) -> str:
-        return self.counted("control.count", n) if n else self.text("control.no")
+    def _row(self, names: Iterable[str]) -> str:
+        return self.text("list.between").join(names)
 
 
 def words_in(language: str) -> Words:

@@ -1,7 +1,7 @@
 """Plan of the block: images, strips, models coloured by parallax, check-point vectors."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import matplotlib
@@ -21,6 +21,7 @@ from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..document.rows import rows
 from ..figures import style
+from ..figures.difference_plan import Panel, difference_plan, differences_m, places
 from ..figures.plan_view import (
     PlanView,
     arrow_scale,
@@ -28,7 +29,6 @@ from ..figures.plan_view import (
     north_and_scale,
     polylines,
     scale_arrow,
-    view_around,
     view_of,
 )
 from .view import strips
@@ -76,62 +76,21 @@ def block_plan(results: Results) -> Drawing | None:
 def check_point_plan(results: Results) -> Drawing | None:
     """Differences at check points before and after the selected correction, shift removed."""
     words = {"pos": "POS as delivered", "selected": "after the selected correction"}
-    return difference_plan(results.images, results.check_point_residuals, words, centred=True)
-
-
-def difference_plan(
-    images: Sequence[ImagePlace],
-    residuals: Sequence[CheckPointResidual],
-    orientations: Mapping[str, str],
-    *,
-    centred: bool,
-) -> Drawing | None:
-    """Differences at check points from several orientations, one panel each; None without.
-
-    Parameters
-    ----------
-    images
-        Of the block, behind the arrows; may be empty.
-    residuals
-        Of check points, by all orientations.
-    orientations
-        Titles of the panels by the names of the orientations.
-    centred
-        Whether the mean difference is taken off.
-    """
-    found = [(words, rows(residuals, orientation=name)) for name, words in orientations.items()]
-    panels = [(words, part) for words, part in found if part]
-    if not panels:
+    panels = [
+        Panel(title, rows(results.check_point_residuals, orientation=name))
+        for name, title in words.items()
+    ]
+    drawn = difference_plan(results.images, panels, ("east, m", "north, m"), centred=True)
+    if drawn is None:
         return None
-    view = view_of(images) if images else view_around(_places(panels[0][1]))
-    figure, axes = _panels(view, len(panels))
-    for axis, (words, part) in zip(axes, panels, strict=True):
-        images_behind(axis, view, images)
-        with_north = view.turned and axis is axes[0]
-        _differences(axis, view, part, row=1 if with_north else 0, centred=centred)
-        axis.set_title(words, loc="right" if view.turned else "left", pad=4 if view.turned else 20)
-        view.dress(axis)
-        if with_north:
-            north_and_scale(axis, view)
-    mean = "removed" if centred else "kept"
+    figure, turned = drawn
     caption = (
-        f"Differences at check points (computed minus given, mean difference {mean}). Solid blue: "
+        "Differences at check points (computed minus given, mean difference removed). Solid blue: "
         "horizontal; dashed orange: vertical, drawn towards north"
-        f"{' (right)' if view.turned else ''} where the computed point is too high. Each panel has "
+        f"{' (right)' if turned else ''} where the computed point is too high. Each panel has "
         "its own scale arrow."
     )
     return style.finish(figure, "check_points", "Differences at check points in plan", caption)
-
-
-def _panels(view: PlanView, count: int) -> tuple[Figure, Sequence[Axes]]:
-    """Panels one above the other if the plan is turned, else side by side."""
-    slope = view.height_m / view.width_m
-    if view.turned:
-        each = min((style.WIDTH_IN - BESIDE_TURNED_IN) * slope, 2.6) + 0.4
-        figure = style.new_figure(count * each + 0.45)
-        return figure, list(np.atleast_1d(figure.subplots(count, 1, sharex=True)))
-    figure = style.new_figure(min(max(2.9 * slope, 2.2), 4.6) + 0.9)
-    return figure, list(np.atleast_1d(figure.subplots(1, count, sharey=True)))
 
 
 def _sizes(view: PlanView) -> tuple[float, float, float]:
@@ -268,18 +227,11 @@ def _overlap(one: Label, other: Label) -> bool:
     return bool(apart[0] < width + 2.0 and apart[1] < LINE_PT)
 
 
-def images_behind(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> None:
-    """Exposure stations as pale dots, for orientation."""
-    places = [(row.x_m, row.y_m) for row in images]
-    if places:
-        axis.plot(*view.drawn(places), **style.dots(style.LIGHT, 1.6))
-
-
 def _check_points(axis: Axes, view: PlanView, points: Sequence[CheckPointResidual]) -> bool:
     """Triangles at the check points and their horizontal differences as arrows."""
     if not points:
         return False
-    place, difference = _places(points), _differences_m(points)[:, :2]
+    place, difference = places(points), differences_m(points)[:, :2]
     axis.plot(*view.drawn(place), "^", color="white", mec=style.VERMILLION, mew=1.0, ms=5.5,
               zorder=4)  # fmt: skip
     scale = arrow_scale(np.hypot(*difference.T), view)
@@ -288,29 +240,3 @@ def _check_points(axis: Axes, view: PlanView, points: Sequence[CheckPointResidua
     difference_arrows(axis, view, place, difference, scale[0], style.VERMILLION)
     scale_arrow(axis, view, scale, style.VERMILLION, row=1)
     return True
-
-
-def _differences(
-    axis: Axes, view: PlanView, points: Sequence[CheckPointResidual], row: int, *, centred: bool
-) -> None:
-    """Horizontal and vertical differences as arrows, the mean of each removed if `centred`."""
-    place, difference = _places(points), _differences_m(points)
-    if centred and np.isfinite(difference).all(axis=1).sum() > 1:
-        difference = difference - np.nanmean(difference, axis=0)
-    axis.plot(*view.drawn(place), "^", color="white", mec=style.BLACK, mew=0.7, ms=4.0, zorder=4)
-    scale = arrow_scale(np.linalg.norm(difference, axis=1), view)
-    if scale is None:
-        return
-    vertical = np.column_stack([np.zeros(len(points)), difference[:, 2]])
-    difference_arrows(axis, view, place, difference[:, :2], scale[0], style.BLUE)
-    difference_arrows(axis, view, place, vertical, scale[0], style.VERMILLION, "--")
-    scale_arrow(axis, view, scale, style.BLACK, row)
-
-
-def _places(points: Sequence[CheckPointResidual]) -> Floats:
-    return np.array([(point.x_m, point.y_m) for point in points])
-
-
-def _differences_m(points: Sequence[CheckPointResidual]) -> Floats:
-    """Differences (n, 3), NaN where unknown."""
-    return np.array([(p.dx_m, p.dy_m, p.dz_m) for p in points], dtype=float)

@@ -10,10 +10,10 @@ from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
 from posstats.contract.acceptance import Acceptance
+from posstats.contract.choices import JudgedOrientation, Language
 from posstats.contract.files import from_json, to_json
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
-from posstats.settings import JudgedOrientation, Language
 
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document

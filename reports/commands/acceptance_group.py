@@ -6,10 +6,9 @@ from typing import get_args
 
 import click
 
+from posstats.contract.choices import JudgedOrientation, Language, TerrainKind
 from posstats.errors import PosstatsError
-from posstats.settings import JudgedOrientation, Language, TerrainKind
 
-from ..output import timestamp
 from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
 
 
@@ -177,6 +176,7 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
     Example:
       posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
     """
+    from ..output import timestamp
     from .sign import sign_file
 
     for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock()):
@@ -215,6 +215,7 @@ def verify(
     Example:
       posstats verify acceptance-signed.pdf --inputs flight7 --trust authority.pem
     """
+    from ..output import timestamp
     from ..verification.questions import holds
     from ..verification.words import line, words_of
     from .verify import verify_file

@@ -14,10 +14,11 @@ from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.adjustment.writing import write_adjustment
 from posstats.block.model import Block
 from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.choices import ControlChoice, ControlSubset, NamedControl
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
-from posstats.settings import AdjustmentSettings, ControlChoice, ControlSubset, NamedControl
+from posstats.settings import AdjustmentSettings
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict

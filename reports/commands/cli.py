@@ -9,8 +9,14 @@ from typing import get_args
 
 import click
 
-from posstats.settings import (
-    AdjustmentSettings,
+from posstats.contract.choices import (
+    DEFAULT_DRIFT,
+    DEFAULT_ERRORS,
+    DEFAULT_FRAME,
+    DEFAULT_ROBUST,
+    DEFAULT_RULES,
+    DEFAULT_SCOPE,
+    DEFAULT_SELF_CALIBRATION,
     AngleErrorSource,
     ControlSubset,
     DriftScope,
@@ -20,7 +26,6 @@ from posstats.settings import (
     ScenarioName,
     Scope,
     SelfCalibration,
-    Settings,
 )
 from posstats.version import __version__
 
@@ -57,7 +62,7 @@ def cli() -> None:
 @out_option
 @click.option(
     "--rules",
-    default=Settings.rules,
+    default=DEFAULT_RULES,
     show_default=True,
     metavar=named(RuleSetName),
     help="Which angles to correct: the paper's rule, the strict rule, or a TOML file.",
@@ -65,14 +70,14 @@ def cli() -> None:
 @click.option(
     "--scope",
     type=choice(Scope),
-    default=Settings.scope,
+    default=DEFAULT_SCOPE,
     show_default=True,
     help="One regression line for the block, or one per strip.",
 )
 @click.option(
     "--errors",
     type=choice(AngleErrorSource),
-    default=Settings.errors,
+    default=DEFAULT_ERRORS,
     show_default=True,
     help="Angle errors from the tie points, from a bundle adjustment with control points, or "
     "against adjusted.csv.",
@@ -80,13 +85,13 @@ def cli() -> None:
 @click.option(
     "--frame",
     type=choice(FrameChoice),
-    default=Settings.frame,
+    default=DEFAULT_FRAME,
     show_default=True,
     help="Frame of the regression; auto takes the one that fits better out of sample.",
 )
 @click.option(
     "--robust/--no-robust",
-    default=Settings.robust,
+    default=DEFAULT_ROBUST,
     show_default=True,
     help="Resist blunders in the tie points, or plain least squares.",
 )
@@ -113,6 +118,8 @@ def analyse(
     Example:
       posstats analyse flight7 --out flight7/report --rules strict --frame auto
     """
+    from posstats.settings import Settings
+
     from .analyse import analyse_block
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
@@ -133,14 +140,14 @@ def analyse(
 @click.option(
     "--drift",
     type=choice(DriftScope),
-    default=AdjustmentSettings.drift,
+    default=DEFAULT_DRIFT,
     show_default=True,
     help="Shifts and drifts of GNSS and IMU, and the boresight: none, or of the block or strips.",
 )
 @click.option(
     "--self-calibration",
     type=choice(SelfCalibration),
-    default=AdjustmentSettings.self_calibration,
+    default=DEFAULT_SELF_CALIBRATION,
     show_default=True,
     help="Image deformation.",
 )
@@ -157,7 +164,7 @@ def analyse(
 @calibration_option
 @click.option(
     "--robust/--no-robust",
-    default=AdjustmentSettings.robust,
+    default=DEFAULT_ROBUST,
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
@@ -195,6 +202,8 @@ def adjust(
     Example:
       posstats adjust flight7 --control corners --drift strip --out flight7/adjusted
     """
+    from posstats.settings import AdjustmentSettings
+
     from .adjust import adjust_folder, control_choice
 
     settings = AdjustmentSettings(
@@ -248,6 +257,8 @@ def calibrate(
       posstats calibrate field --out boresight.toml
       posstats analyse flight7 --calibration boresight.toml
     """
+    from posstats.settings import AdjustmentSettings
+
     from .adjust import control_choice
     from .calibrate import calibrate_folder
 

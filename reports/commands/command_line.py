@@ -8,8 +8,8 @@ from typing import ParamSpec, TypeVar, get_args
 
 import click
 
+from posstats.contract.choices import PAPER_SEED
 from posstats.errors import PosstatsError
-from posstats.settings import PAPER_SEED
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _Given = ParamSpec("_Given")

@@ -15,8 +15,8 @@ from typing import get_args
 
 from babel.messages.pofile import read_po
 
+from posstats.contract.choices import Language
 from posstats.errors import PosstatsError
-from posstats.settings import Language
 
 LANGUAGES: tuple[Language, ...] = get_args(Language)
 _PATH = "locale/{language}/LC_MESSAGES/{domain}.po"

@@ -60,7 +60,7 @@ def difference_plan(
     view = view_of(images) if images else view_around(shown)
     figure, axes = _panels(view, len(panels))
     for axis, panel in zip(axes, panels, strict=True):
-        _images_behind(axis, view, images)
+        images_behind(axis, view, images)
         with_north = view.turned and axis is axes[0]
         _differences(axis, view, panel.points, row=1 if with_north else 0, centred=centred)
         axis.set_title(panel.title, loc="right" if view.turned else "left",
@@ -82,7 +82,7 @@ def _panels(view: PlanView, count: int) -> tuple[Figure, Sequence[Axes]]:
     return figure, list(np.atleast_1d(figure.subplots(1, count, sharey=True)))
 
 
-def _images_behind(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> None:
+def images_behind(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> None:
     """Exposure stations as pale dots, for orientation."""
     if images:
         places = [(image.x_m, image.y_m) for image in images]
@@ -93,8 +93,7 @@ def _differences(
     axis: Axes, view: PlanView, points: Sequence[CheckPointResidual], row: int, *, centred: bool
 ) -> None:
     """Horizontal and vertical differences as arrows, the mean of each removed if `centred`."""
-    place = np.array([(point.x_m, point.y_m) for point in points])
-    difference = _differences_m(points)
+    place, difference = places(points), differences_m(points)
     if centred and np.isfinite(difference).all(axis=1).sum() > 1:
         difference = difference - np.nanmean(difference, axis=0)
     axis.plot(*view.drawn(place), "^", color="white", mec=style.BLACK, mew=0.7, ms=4.0, zorder=4)
@@ -107,6 +106,11 @@ def _differences(
     scale_arrow(axis, view, scale, style.BLACK, row)
 
 
-def _differences_m(points: Sequence[CheckPointResidual]) -> Floats:
-    """(n, 3), NaN where unknown."""
+def places(points: Sequence[CheckPointResidual]) -> Floats:
+    """(n, 2) east and north, as given."""
+    return np.array([(point.x_m, point.y_m) for point in points])
+
+
+def differences_m(points: Sequence[CheckPointResidual]) -> Floats:
+    """(n, 3) computed minus given, NaN where unknown."""
     return np.array([(point.dx_m, point.dy_m, point.dz_m) for point in points], dtype=float)

@@ -147,7 +147,7 @@ def test_a_formula_without_a_usable_value_says_why(text, reason):
     formula = Formula(text)
     with pytest.raises(FormulaError, match=r"^found '") as caught:
         formula.evaluate(PRODUCT)
-    assert caught.value.reason == reason
+    assert reason in caught.value.reason
 
 
 @settings(max_examples=300, deadline=None)

@@ -31,7 +31,7 @@ def adjusted():
 
 @pytest.fixture(scope="module")
 def values(adjusted):
-    return as_values(adjustment_results(adjusted))
+    return adjustment_results(adjusted)
 
 
 def measured_and_computed(adjustment):

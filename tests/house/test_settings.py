@@ -6,8 +6,9 @@ from typing import get_args
 
 import pytest
 
+from posstats.contract.choices import RuleSetName, ScenarioName
 from posstats.errors import PosstatsError
-from posstats.settings import AdjustmentSettings, RuleSetName, ScenarioName, Settings
+from posstats.settings import AdjustmentSettings, Settings
 
 
 @pytest.mark.parametrize(

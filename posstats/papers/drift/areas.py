@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from posstats.analysis.steps import Analysis, Progress, analyse
 from posstats.block.image_pairs import StereoModels
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import PAPER_SEED
 from posstats.geometry.stereo.parallax import block_statistics, model_rms_px
-from posstats.settings import PAPER_SEED, Settings
+from posstats.settings import Settings
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 
 AREAS = (1, 2, 3)

@@ -16,6 +16,7 @@ from posstats.adjustment.control import chosen_control
 from posstats.adjustment.significance import parameter_tests
 from posstats.arrays import Bools
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import ControlSubset
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     differences,
@@ -24,7 +25,7 @@ from posstats.geometry.ground.check_points import (
 from posstats.numerics.bundle import adjust
 from posstats.numerics.bundle.parameters import BORESIGHT, CommonParameter
 from posstats.numerics.bundle.problem import AdjustedBundle, BundleProblem
-from posstats.settings import AdjustmentSettings, ControlSubset, DriftPriors
+from posstats.settings import AdjustmentSettings, DriftPriors
 
 Unknowns = Literal["none", "weighted", "free"]
 """Of the POS: no systematic errors; boresight, and shifts and drifts of every strip, as weighted

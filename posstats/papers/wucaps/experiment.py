@@ -11,6 +11,7 @@ from posstats.analysis.rules import Decision
 from posstats.analysis.steps import Analysis, analyse
 from posstats.block.image_pairs import StereoModels, stereo_models
 from posstats.block.model import Block, Orientations
+from posstats.contract.choices import PAPER_SEED, ControlSubset
 from posstats.errors import UndeterminedError
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.wucaps.adjustments import (
@@ -21,7 +22,7 @@ from posstats.papers.wucaps.adjustments import (
 )
 from posstats.papers.wucaps.measures import Measures, measured
 from posstats.papers.wucaps.situations import Flights, Situation, simulated
-from posstats.settings import PAPER_SEED, ControlSubset, Settings
+from posstats.settings import Settings
 
 Method = Literal[
     "pos",

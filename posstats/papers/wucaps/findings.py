@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from posstats.contract.choices import ControlSubset
 from posstats.geometry.stereo.parallax import NOTICEABLE
 from posstats.papers.wucaps.adjustments import CONTROLS
 from posstats.papers.wucaps.experiment import SituationRun
 from posstats.papers.wucaps.situations import Situation
-from posstats.settings import ControlSubset
 
 RECOMMENDED: dict[Situation, ControlSubset] = {"flat": "corners", "mountain": "centre"}
 """The control points that the paper recommends."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from posstats.block.model import Block
-from posstats.settings import PAPER_SEED
+from posstats.contract.choices import PAPER_SEED
 from posstats.synthetic import Scenario, shipped_scenario, simulate
 from posstats.synthetic.scenario import AngleError, PositionError
 

@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from posstats.contract.choices import ControlSubset
 from posstats.papers.wucaps.adjustments import CONTROLS, control_points
 from posstats.papers.wucaps.experiment import METHODS as ALL_METHODS
 from posstats.papers.wucaps.experiment import Method, Row, SituationRun
 from posstats.papers.wucaps.findings import RECOMMENDED
 from posstats.papers.wucaps.reproduction import Reproduction
-from posstats.settings import ControlSubset
 
 from ...document import format as fmt
 from ...document.drawing import Drawing

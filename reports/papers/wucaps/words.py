@@ -1,8 +1,8 @@
 """How the report on the second paper calls its situations, methods and control points."""
 
+from posstats.contract.choices import ControlSubset
 from posstats.papers.wucaps.experiment import Method
 from posstats.papers.wucaps.situations import Situation
-from posstats.settings import ControlSubset
 
 from ...document.format import NARROW_SPACE
 

@@ -7,10 +7,10 @@ import pytest
 from posstats.adjustment.defects import RULES
 from posstats.adjustment.undetermined import FAMILIES, OF_CAMERA, family_of
 from posstats.contract.adjustment import DroppedParameter, Element, Group, Observed
+from posstats.contract.choices import DriftScope, NamedControl, SelfCalibration
 from posstats.contract.notice import Notice
 from posstats.numerics.bundle.parameters import UNITS
 from posstats.reports.adjustment.words import words_in
-from posstats.settings import DriftScope, NamedControl, SelfCalibration
 
 LANGUAGES = ("en", "zh")
 OBSERVED = get_args(Observed)

@@ -4,7 +4,6 @@ import numpy as np
 
 from posstats.analysis.regression import AngleRegression
 from posstats.analysis.rows import regression_row
-from posstats.contract.files import as_values
 from posstats.reports.block.line_figures import generalised, ordinary
 from posstats.statistics.drift import fit_drift
 
@@ -16,7 +15,7 @@ KNOWN = np.diag([1.0, 9.0, 1.0, 4.0, 1.0, 25.0]) * 1e-10
 def test_lines_and_bands_are_those_of_the_fits_away_from_their_reference_too():
     fits = fit_drift(TIME, ERROR), fit_drift(TIME, ERROR, KNOWN)
     made = AngleRegression("omega", "ground", "block", 6, 1, *fits, None, None, True)
-    row = as_values(regression_row(made))
+    row = regression_row(made)
     at = np.array([TIME[0] - 50.0, TIME[2], TIME[5] + 100.0])
     for line, fit in zip((ordinary(row), generalised(row)), fits, strict=True):
         middle, se = fit.predict(at)

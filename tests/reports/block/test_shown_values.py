@@ -7,6 +7,8 @@ import pytest
 from report_results import area_results
 from shown_values import arrows, assert_cell, assert_column, on_ground, svgs_of, tables_of
 
+from posstats.contract.files import as_values, from_values
+from posstats.contract.results import Results
 from posstats.reports.block import document as block_document
 from posstats.reports.figures import style
 
@@ -25,9 +27,15 @@ def distinct_check_points(results):
     return results
 
 
+def built(values):
+    """The document of results.json."""
+    return block_document.build(from_values(values, Results, "made up"))
+
+
 @pytest.fixture(scope="module")
 def area():
-    made = area_results(n_strips=3, per_strip=8)
+    """The values of results.json."""
+    made = as_values(area_results(n_strips=3, per_strip=8))
     rng = np.random.default_rng(2)
     for key in ("error_sources", "corrected_parallax"):
         for row in made[key]:
@@ -39,7 +47,7 @@ def area():
 
 @pytest.fixture(scope="module")
 def document(area):
-    return block_document.build(area)
+    return built(area)
 
 
 @pytest.fixture(scope="module")
@@ -209,9 +217,9 @@ def test_arrows_of_the_plan_point_from_given_to_computed(area, document):
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_arrows_of_check_points_are_differences_less_their_mean(area, turned):
-    made = area_results(n_strips=2, per_strip=30) if turned else area
+    made = as_values(area_results(n_strips=2, per_strip=30)) if turned else area
     points = of(made, "check_point_residuals", orientation="pos")
-    svg = svgs_of(block_document.build(made))["check_points"]
+    svg = svgs_of(built(made))["check_points"]
     difference = np.array([(p["dx_m"], p["dy_m"], p["dz_m"]) for p in points])
     difference -= difference.mean(axis=0)
     assert_alike(drawn_differences(svg, style.BLUE, points), difference[:, :2])

@@ -9,7 +9,7 @@ from posstats.reports.figures.plan_view import (
     arrow_scale,
     difference_arrows,
     many_arrows,
-    view_of,
+    view_around,
 )
 
 PLACE = np.array([[100.0, 2000.0], [400.0, 2500.0], [150.0, 3100.0]])
@@ -75,8 +75,7 @@ def test_the_largest_difference_is_a_tenth_of_the_plan_and_the_scale_a_round_len
 
 
 def test_a_view_holds_its_places_and_is_turned_where_north_is_long():
-    places = [{"x_m": x, "y_m": y} for x, y in PLACE]
-    view = view_of(places)
+    view = view_around(PLACE)
     assert view.turned
     assert view.west < 100.0 < 400.0 < view.east
     assert view.south < 2000.0 < 3100.0 < view.north
