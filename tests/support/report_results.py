@@ -9,6 +9,7 @@ import numpy as np
 from report_check_points import check_point_residuals, check_points
 from report_regression import ANGLES, regressions
 
+from posstats.contract.notice import listing
 from posstats.contract.results import (
     AnalysedBlock,
     AnalysisSettings,
@@ -25,6 +26,9 @@ from posstats.contract.results import (
     Verdict,
 )
 from posstats.contract.survey import ImagePlace, InputFile
+from posstats.reports.block.wording import warnings
+
+NOTICES = listing("models_with_few_points", ["3_07 - 3_08"], n_needed=6)
 
 PIXEL_MM = 0.012
 _HELD = {"angles": 22.7, "omega": 22.4, "phi": 0.31, "kappa": 0.47, "none": 0.28}
@@ -80,11 +84,17 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> Resul
         observability=(
             Observability(scope="block", images=()),
             *(
-                Observability(scope=s, unobservable=("rotation about the base axis",), images=())
+                Observability(
+                    scope=s,
+                    unobservable=("rotation about the base axis",),
+                    rotations=("about_base_axis",),
+                    images=(),
+                )
                 for s in strips
             ),
         ),
-        warnings=("Strip 3: image 3_07 has fewer than 6 points in common with its neighbour.",),
+        warnings=warnings(NOTICES),
+        notices=NOTICES,
     )
 
 

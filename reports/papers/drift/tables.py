@@ -3,7 +3,8 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from posstats.papers.drift.comparison import TABLE3_AREA, Compared
+from posstats.contract.comparison import Compared
+from posstats.papers.drift.comparison import TABLE3_AREA
 from posstats.papers.drift.findings import known
 from posstats.papers.drift.published import recomputed
 from posstats.papers.drift.reproduction import Reproduction
