@@ -32,7 +32,9 @@ def _text(words: Words, results: Results) -> str:
         frame=words.of("frame", settings.frame),
     )
     why = settings.frame_notice
-    return words.sentences([said, words.notice(why) if why else ""])
+    return words.sentences(
+        [said, words.text("decisions.why", why=words.notice(why)) if why else ""]
+    )
 
 
 def _frames(words: Words, results: Results) -> Table:

@@ -55,7 +55,7 @@ def key_figures(report: BlockReport) -> Iterator[KeyFigure]:
 def _parallax(words: Words, label: str, px: float | None, mm: float | None) -> KeyFigure:
     remark = words.text("key.parallax")
     if not fmt.is_missing(mm):
-        remark = words.text("list.between").join([remark, fmt.with_unit(mm, "mm", 2)])
+        remark = words.text("key.parallax_mm", mm=fmt.with_unit(mm, "mm", 2))
     return KeyFigure(words.text(label), fmt.number(px), "px", remark)
 
 
