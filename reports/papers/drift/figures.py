@@ -8,16 +8,31 @@ from posstats.papers.drift.findings import known, only_row
 from ...block.bar_figures import Bars, bar_figure, corrections, held_angles
 from ...block.line_figures import (
     Panel,
-    errors_of,
     generalised,
     legend_entries,
     ordinary,
-    used_errors,
 )
-from ...block.view import GROUND_ANGLES, strips, strips_with_models
+from ...block.view import GROUND_ANGLES, errors_of, strips, strips_with_models, used_errors
 from ...document import format as fmt
 from ...document.drawing import Drawing
 from ...figures import style
+
+AXES = ("strip", "mean RMS vertical parallax")
+LINES = ("OLS line, 95 % band", "GLS line, 95 % band")
+HELD = {
+    "angles": "all three angles held",
+    "omega": "omega held",
+    "phi": "phi held",
+    "kappa": "kappa held",
+    "none": "none held",
+}
+CORRECTED = {
+    "pos": "POS as delivered",
+    "omega": "omega corrected",
+    "phi": "phi corrected",
+    "kappa": "kappa corrected",
+    "independent": "relative orientation",
+}
 
 
 def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
@@ -40,8 +55,8 @@ def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
 
 
 def _error_sources(area: int, results: Results) -> Drawing:
-    bars = held_angles(results, "mm")
-    figure = bar_figure(bars, strips_with_models(results), "mm")
+    bars = held_angles(results, "mm", HELD)
+    figure = bar_figure(bars, strips_with_models(results), "mm", AXES)
     every, omega, phi, kappa, none = bars
     caption = (
         f"Simulated area {area}, predicted: mean RMS vertical parallax by strip, logarithmic, "
@@ -56,8 +71,8 @@ def _error_sources(area: int, results: Results) -> Drawing:
 
 
 def _corrected(area: int, results: Results) -> Drawing:
-    bars = corrections(results, "mm", GROUND_ANGLES)
-    figure = bar_figure(bars, strips_with_models(results), "mm")
+    bars = corrections(results, "mm", CORRECTED)
+    figure = bar_figure(bars, strips_with_models(results), "mm", AXES)
     pos, omega, phi, kappa, relative = bars
     caption = (
         f"Simulated area {area}, predicted: mean RMS vertical parallax by strip, logarithmic, from "
@@ -99,7 +114,7 @@ def _regression(area: int, results: Results) -> Drawing:
 def _angle_panel(axis: Axes, results: Results, angle: str) -> None:
     data = used_errors(results, angle)
     errors = errors_of(data, angle)
-    panel = Panel(axis, fmt.angle_unit(errors), _start(results))
+    panel = Panel(axis, fmt.angle_unit(errors), _start(results), LINES)
     for strip, (colour, _) in style.strip_style(strips(results)).items():
         part = [row for row in data if row.strip == strip]
         panel.points([row.time_s for row in part], errors_of(part, angle), "_",
