@@ -6,7 +6,7 @@ from ..document import format as fmt
 from .words import Words
 
 
-def held(words: Words, shares: Sequence[float], n_seeds: int, where: Sequence[str] = ()) -> str:
+def held(words: Words, shares: Sequence[float], n_seeds: int, where: str = "") -> str:
     """In how many of the seeds a finding holds.
 
     Parameters
@@ -16,12 +16,12 @@ def held(words: Words, shares: Sequence[float], n_seeds: int, where: Sequence[st
     n_seeds
         Repetitions.
     where
-        Names of the places; none where there is one.
+        The places, where there are several.
     """
     values = {"held": counted(words, shares, n_seeds), "total": fmt.count(n_seeds)}
     if len(shares) == 1:
         return words.text("seeds.held", **values)
-    return words.text("seeds.held_where", where=words.joined(where), **values)
+    return words.text("seeds.held_where", where=where, **values)
 
 
 def counted(words: Words, shares: Sequence[float], n_seeds: int) -> str:

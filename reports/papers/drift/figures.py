@@ -1,7 +1,8 @@
 """Figures 1 to 3 of the first source paper, redrawn for a simulated test area."""
 
-from matplotlib.axes import Axes
+from posstats.contract.results import Results
 
+<<<<<<< HEAD
 from posstats.contract.results import Regression, Results
 from posstats.papers.drift.findings import known, only_row
 
@@ -14,8 +15,12 @@ from ...block.line_figures import (
 )
 from ...block.view import GROUND_ANGLES, errors_of, strips, strips_with_models, used_errors
 from ...document import format as fmt
+=======
+>>>>>>> h-pap
 from ...document.drawing import Drawing
 from ...figures import style
+from . import corrected, regression, sources
+from .words import Words
 
 AXES = ("strip", "mean RMS vertical parallax")
 LINES = ("OLS line, 95 % band", "GLS line, 95 % band")
@@ -35,11 +40,13 @@ CORRECTED = {
 }
 
 
-def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
+def draw_area(words: Words, area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
     """The paper's three figures for one area, in millimetres at image scale and over time.
 
     Parameters
     ----------
+    words
+        Of the report.
     area
         Number of the area; part of the figures' names.
     results
@@ -50,6 +57,7 @@ def draw_area(area: int, results: Results) -> tuple[Drawing, Drawing, Drawing]:
     tuple
         ``area<n>_error_sources``, ``area<n>_regression``, ``area<n>_corrected`` (Figures 1 to 3).
     """
+<<<<<<< HEAD
     with style.style():
         return _error_sources(area, results), _regression(area, results), _corrected(area, results)
 
@@ -173,3 +181,11 @@ def _name_strips(axis: Axes, results: Results) -> None:
         place = (min(times) + max(times)) / 2.0 - _start(results)
         axis.text(place, 1.02, f"strip {strip}" if k == 0 else strip, ha="center", va="bottom",
                   transform=axis.get_xaxis_transform(), fontsize=7.5)  # fmt: skip
+=======
+    with style.style(words.families()):
+        return (
+            sources.figure(words, area, results),
+            regression.figure(words, area, results),
+            corrected.figure(words, area, results),
+        )
+>>>>>>> h-pap

@@ -158,7 +158,7 @@ def _tested(
                 words,
                 [share(criterion, each) for each in situations],
                 len(repeated()[situations[0]]),
-                [words.terrain(each) for each in situations],
+                words.joined(words.terrain(each) for each in situations),
             ),
         ),
     )
