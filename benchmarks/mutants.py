@@ -99,8 +99,8 @@ def run_tests(tree: Path, tests: Sequence[str], most_s: float | None = MOST_S) -
         )
     except subprocess.TimeoutExpired:
         return None
-    if done.returncode not in (PASSED, FAILED):
-        print(done.stdout.decode()[-2000:], file=sys.stderr)
+    if done.returncode not in (PASSED, FAILED) or (done.returncode == FAILED and most_s is None):
+        print(done.stdout.decode()[-3000:], file=sys.stderr)
     return done.returncode
 
 
@@ -110,7 +110,7 @@ def judge(mutant: Mutant, sound: Path) -> str:
     It is put into a copy of the sound tree. Times of files are kept: kernels that were compiled
     there stay valid for files that do not change, and for no others.
     """
-    if (n := mutant.count()) != 1:
+    if (n := mutant.count(sound)) != 1:
         return f"STALE ({n} times in {mutant.file})"
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
         tree = Path(shutil.copytree(sound, Path(folder, "tree"), symlinks=True))

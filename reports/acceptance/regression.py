@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from posstats.contract.results import ImageAngleErrors, Regression, Results, Selection
 
 from ..block import line_figures
-from ..block.view import angles, decided_by_strip
+from ..block.view import angles, decided_by_strip, errors_of, used_errors
 from ..document import format as fmt
 from ..document.content import Paragraph, Part, filled, known
 from ..document.drawing import Drawing
@@ -79,7 +79,7 @@ def decision_table(words: Words, results: Results) -> Table:
 
 def regression_figure(words: Words, results: Results) -> Drawing | None:
     """Errors of the three angles over time with the fitted lines, one panel each."""
-    data = {a: line_figures.used_errors(results, a) for a in angles(results.settings.frame)}
+    data = {a: used_errors(results, a) for a in angles(results.settings.frame)}
     shown = {angle: part for angle, part in data.items() if part}
     if not shown:
         return None
@@ -96,7 +96,7 @@ def regression_figure(words: Words, results: Results) -> Drawing | None:
 def _angle_panel(
     words: Words, axis: Axes, results: Results, angle: str, part: Sequence[ImageAngleErrors]
 ) -> None:
-    errors = line_figures.errors_of(part, angle)
+    errors = errors_of(part, angle)
     start = min(row.time_s for row in part)
     labels = words.text("legend.ols"), words.text("legend.gls")
     panel = line_figures.Panel(axis, fmt.angle_unit(errors), start, labels)

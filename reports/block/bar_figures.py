@@ -1,104 +1,20 @@
-"""Figures of vertical parallax: by model, by angle held (error sources), by angle corrected."""
+"""Bars of mean vertical parallax: by angle held (error sources), by angle corrected."""
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from posstats.contract.results import ModelParallax, Results
+from posstats.contract.results import Results
 
 from ..document import format as fmt
-from ..document.drawing import Drawing
 from ..document.rows import rows
 from ..figures import style
-from .view import (
-    FIXED,
-    GROUND_ANGLES,
-    StripMean,
-    mean_in,
-    mean_over_models,
-    orientation_label,
-    strips_with_models,
-)
-
-AXES = ("strip", "mean RMS vertical parallax")
-
-CORRECTED = "after the selected correction"
-
-_MODEL_SERIES: tuple[tuple[Callable[[ModelParallax], float | None], str, str, str], ...] = (
-    (lambda model: model.pos_px, "POS as delivered", style.VERMILLION, "o"),
-    (lambda model: model.corrected_px, CORRECTED, style.BLUE, "s"),
-    (lambda model: model.independent_px, "relative orientation", style.GREEN, "^"),
-)
-
-
-def by_model(results: Results) -> Drawing | None:
-    """Parallax of every model in the order of flight, strips side by side."""
-    models = results.models
-    values = fmt.present(value(model) for model in models for value, *_ in _MODEL_SERIES)
-    values = [value for value in values if value > 0]
-    if not values:
-        return None
-    figure = style.new_figure(3.1)
-    axis = figure.add_subplot()
-    place = {strip: k for k, strip in enumerate(strips_with_models(results))}
-    ordered = sorted(models, key=lambda model: place.get(model.strip, len(place)))
-    chosen = results.verdict.corrected_angles
-    for value, label, colour, marker in _MODEL_SERIES:
-        if label == CORRECTED and not chosen:
-            continue  # the same as the POS: it would hide it
-        known = [value(model) for model in ordered]
-        y = [np.nan if each is None else each for each in known]
-        look: dict[str, Any] = {"marker": marker, "ls": "", "ms": 2.6, "mew": 0.7, "mfc": "none"}
-        look = style.dots(colour, 2.8) if marker == "o" else look | {"color": colour}
-        axis.plot(range(len(y)), y, label=label, **look)
-    style.log_axis(axis, values)
-    _strip_bands(axis, [model.strip for model in ordered])
-    axis.set_ylabel("RMS vertical parallax, px")
-    style.legend_below(figure, axis, 3)
-    caption = (
-        "RMS vertical parallax of every stereo model, in the order of flight (logarithmic scale; "
-        "strips apart by shading). Relative orientation is what the images themselves allow."
-    )
-    return style.finish(figure, "models", "Vertical parallax of every stereo model", caption)
-
-
-def error_sources(results: Results) -> Drawing | None:
-    """Bars per strip: what relative orientation leaves with POS angles held."""
-    caption = (
-        "Error sources: mean RMS vertical parallax per strip after relative orientation with POS "
-        "angles of the right image held (logarithmic scale; the numbers are means over all "
-        "models). Grey is what remains with none held. An angle whose bars reach those of all "
-        "three carries the error; one whose bars stay grey does no harm."
-    )
-    bars = held_angles(results, "px")
-    if not any(group.of_strip for group in bars):
-        return None
-    figure = bar_figure(bars, strips_with_models(results), "px")
-    return style.finish(figure, "error_sources", "Vertical parallax with POS angles held", caption)
-
-
-def corrected(results: Results) -> Drawing | None:
-    """Bars per strip: raw, each angle corrected alone, selected set, relative orientation."""
-    chosen = results.verdict.corrected_angles
-    words = f"Selected: {fmt.joined(chosen)}." if chosen else "No correction was selected."
-    caption = (
-        "Mean RMS vertical parallax per strip from the POS as delivered, with each angle corrected "
-        "alone, with the selected corrections, and after relative orientation (logarithmic "
-        "scale; the numbers are means over all models). Grey is what relative orientation "
-        f"leaves. {words}"
-    )
-    bars = corrections(results, "px", (*GROUND_ANGLES, "selected"))
-    if not any(group.of_strip for group in bars):
-        return None
-    figure = bar_figure(bars, strips_with_models(results), "px")
-    return style.finish(figure, "corrected", "Vertical parallax after correction", caption)
+from .view import StripMean, mean_in, mean_over_models
 
 
 @dataclass(frozen=True)
@@ -110,25 +26,27 @@ class Bars:
     mean: float | None
 
 
-def held_angles(results: Results, unit: str) -> list[Bars]:
-    """Relative orientation with POS angles held, none of them last; `unit` is px or mm."""
+def held_angles(results: Results, unit: str, titles: Mapping[str, str]) -> list[Bars]:
+    """Relative orientation with POS angles held, one group for every title; `unit` is px or mm.
+
+    `titles` are those of the groups, by what is held, none of them last.
+    """
     return [
-        _bars(label, rows(results.error_sources, fixed=name), unit) for name, label in FIXED.items()
+        _bars(title, rows(results.error_sources, fixed=held), unit)
+        for held, title in titles.items()
     ]
 
 
-def corrections(results: Results, unit: str, corrected: Sequence[str]) -> list[Bars]:
-    """The POS as delivered, corrections of it, relative orientation; `unit` is px or mm."""
-    made = [
-        _bars(orientation_label(name, results.verdict.corrected_angles),
-              rows(results.corrected_parallax, corrected=name), unit)
-        for name in corrected
+def corrections(results: Results, unit: str, titles: Mapping[str, str]) -> list[Bars]:
+    """The POS, corrections of it, relative orientation, one group for every title.
+
+    `titles` are those of the groups: ``pos``, the angles corrected, ``independent``.
+    """
+    return [
+        _bars(title, rows(results.parallax, method=name)
+              or rows(results.corrected_parallax, corrected=name), unit)
+        for name, title in titles.items()
     ]  # fmt: skip
-    ends = {"pos": "POS as delivered", "independent": "relative orientation"}
-    pos, relative = (
-        _bars(label, rows(results.parallax, method=name), unit) for name, label in ends.items()
-    )
-    return [pos, *made, relative]
 
 
 def _bars(label: str, per_strip: Sequence[StripMean], unit: str) -> Bars:
@@ -139,7 +57,7 @@ def _bars(label: str, per_strip: Sequence[StripMean], unit: str) -> Bars:
 
 
 def bar_figure(
-    groups: Sequence[Bars], strips: Sequence[str], unit: str, names: tuple[str, str] = AXES
+    groups: Sequence[Bars], strips: Sequence[str], unit: str, names: tuple[str, str]
 ) -> Figure:
     """Groups of bars side by side, one bar per strip, on a logarithmic scale.
 
@@ -198,14 +116,3 @@ def _strip_labels(axis: Axes, labels: list[str], lefts: Sequence[float], name: s
                     fontsize=6.5 if turned else 7.5)  # fmt: skip
     axis.tick_params(axis="x", length=0)
     axis.set_xlabel(name)
-
-
-def _strip_bands(axis: Axes, strip_of_model: Sequence[str]) -> None:
-    """Every second strip on a grey ground, ids in the middle."""
-    ids = list(dict.fromkeys(strip_of_model))
-    starts = [strip_of_model.index(strip) for strip in ids] + [len(strip_of_model)]
-    for k in range(0, len(ids), 2):
-        axis.axvspan(starts[k] - 0.5, starts[k + 1] - 0.5, color=style.LIGHT, alpha=0.35, lw=0)
-    centres = [(a + b - 1) / 2.0 for a, b in pairwise(starts)]
-    style.strip_ticks(axis, centres, ids)
-    axis.set_xlim(-0.5, len(strip_of_model) - 0.5)

@@ -13,16 +13,12 @@ from matplotlib.figure import Figure
 from scipy.special import stdtrit
 
 from posstats.arrays import Floats
-from posstats.contract.results import ImageAngleErrors, Regression, Results, Selection
+from posstats.contract.results import ImageAngleErrors, Regression, Results
 
 from ..document import format as fmt
-from ..document.drawing import Drawing
-from ..document.rows import first, rows
+from ..document.rows import rows
 from ..figures import style
-from .view import angles, decided_by_strip, error_of
-
-OLS_LABEL = "OLS line, 95 % band"
-GLS_LABEL = "GLS line, 95 % band"
+from .view import decided_by_strip, errors_of
 
 
 @dataclass(frozen=True)
@@ -39,6 +35,10 @@ class Line:
 
     def at(self, time_s: Floats) -> Floats:
         """Fitted error at times."""
+        return self.intercept_rad + self.slope_rad_per_s * (time_s - self.origin_s)
+
+    def value(self, time_s: float) -> float:
+        """Fitted error at one time."""
         return self.intercept_rad + self.slope_rad_per_s * (time_s - self.origin_s)
 
     def half_width(self, time_s: Floats) -> Floats:
@@ -63,7 +63,7 @@ class Panel:
     axis: Axes
     unit: fmt.Unit
     start_s: float
-    labels: tuple[str, str] = (OLS_LABEL, GLS_LABEL)
+    labels: tuple[str, str]
 
     def points(
         self, time_s: npt.ArrayLike, error_rad: npt.ArrayLike, label: str, look: dict[str, Any]
@@ -137,55 +137,12 @@ def _line(*values: float | None) -> Line | None:
     return Line(*known) if len(known) == len(values) else None
 
 
-def regressions(results: Results) -> list[Drawing]:
-    """One figure per angle of the frame of the corrections, if its errors are in the results."""
-    frame = results.settings.frame
-    drawings = [_regression(results, frame, angle) for angle in angles(frame)]
-    return [drawing for drawing in drawings if drawing]
-
-
-def _regression(results: Results, frame: str, angle: str) -> Drawing | None:
-    data = used_errors(results, angle)
-    if not data:
-        return None
-    figure = style.new_figure(3.7)
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
-    start = min(row.time_s for row in data)
-    lines = fitted_lines(results, frame, angle)
-    errors = errors_of(data, angle)
-    panel = Panel(upper, fmt.angle_unit(errors), start)
-    draw_errors(panel, data, angle, lines)
-    for row in rows(results.selection, frame=frame, angle=angle, form="constant"):
-        _draw_constant(panel, results, row)
-    panel.keep_large(errors)
-    panel.label(f"error of {angle}")
-    _draw_residuals(lower, start, data, angle, lines)
-    lower.set_xlabel("time since the first exposure shown, s")
-    figure.align_ylabels([upper, lower])
-    legend(figure, upper)
-    caption = _caption(angle, frame, start, bool(lines))
-    name = f"regression_{frame}_{angle}"
-    return style.finish(figure, name, f"Regression of the error of {angle} on time", caption)
-
-
-def used_errors(results: Results, angle: str) -> list[ImageAngleErrors]:
-    """Images whose error of an angle is determined."""
-    return [
-        row for row in results.angle_errors if row.used and not fmt.is_missing(error_of(row, angle))
-    ]
-
-
-def errors_of(data: Sequence[ImageAngleErrors], angle: str) -> list[float]:
-    """Errors of an angle, rad, of images where it is determined."""
-    return fmt.present(error_of(row, angle) for row in data)
-
-
 def fitted_lines(results: Results, frame: str, angle: str) -> Lines:
     """Lines of the scope the analysis decided at: the block's, or one per strip."""
-    by_strip = decided_by_strip(results)
+    is_by_strip = decided_by_strip(results)
     fitted = {}
     for row in rows(results.regression, frame=frame, angle=angle):
-        if (row.scope != "block") == by_strip and (ordinary(row) or generalised(row)):
+        if (row.scope != "block") == is_by_strip and (ordinary(row) or generalised(row)):
             fitted[row.scope] = (ordinary(row), generalised(row))
     return fitted
 
@@ -197,40 +154,18 @@ def draw_errors(
     lines: Lines,
     strip_words: str = "strip {strip}",
 ) -> None:
-    """Errors of an angle with the fitted lines; `strip_words` names a strip in the legend."""
-    for strip, part, look in _by_strip(data):
+    """Errors of an angle with the fitted lines; `strip_words` has ``{strip}`` for a strip."""
+    for strip, part, look in by_strip(data):
         errors = errors_of(part, angle)
         label = strip_words.format(strip=fmt.shortened(strip))
         panel.points([row.time_s for row in part], errors, label, look)
     for scope, (ols, gls) in lines.items():
-        times = _times(data, scope)
+        times = times_in(data, scope)
         if times:
             panel.fit(times, ols, gls)
 
 
-def _draw_residuals(
-    axis: Axes, start_s: float, data: Sequence[ImageAngleErrors], angle: str, lines: Lines
-) -> None:
-    """Errors less their OLS line, where its band is large enough to be seen."""
-    residuals = {}
-    for row, error in zip(data, errors_of(data, angle), strict=True):
-        ols = lines.get("block", lines.get(row.strip, (None, None)))[0]
-        if ols:
-            residuals[row.image] = error - float(ols.at(np.asarray(row.time_s)))
-    panel = Panel(axis, fmt.angle_unit(residuals.values()), start_s)
-    for _, part, look in _by_strip([row for row in data if row.image in residuals]):
-        errors = [residuals[row.image] for row in part]
-        panel.points([row.time_s for row in part], errors, "_", look)
-    for scope, (ols, gls) in lines.items():
-        times = _times(data, scope)
-        if times and ols:
-            panel.fit(times, ols, gls, zero=ols)
-    if residuals:
-        panel.keep_large(list(residuals.values()))
-    panel.label("residual")
-
-
-def _by_strip(
+def by_strip(
     data: Sequence[ImageAngleErrors],
 ) -> Iterator[tuple[str, list[ImageAngleErrors], dict[str, Any]]]:
     """Each strip, its rows and the look of its marks."""
@@ -240,16 +175,9 @@ def _by_strip(
         yield strip, [row for row in data if row.strip == strip], look
 
 
-def _times(data: Sequence[ImageAngleErrors], scope: str) -> list[float]:
+def times_in(data: Sequence[ImageAngleErrors], scope: str) -> list[float]:
+    """Times of the images of a scope."""
     return [row.time_s for row in data if scope in ("block", row.strip)]
-
-
-def _draw_constant(panel: Panel, results: Results, decision: Selection) -> None:
-    """The constant that is taken off the whole block."""
-    fit = first(results.regression, frame=decision.frame, angle=decision.angle, scope="block")
-    if decision.scope == "block" and fit and fit.constant_rad is not None:
-        panel.axis.axhline(fit.constant_rad * panel.unit.per_si, color=style.GREEN, ls="-.", lw=1.3,
-                           label="constant taken off")  # fmt: skip
 
 
 def legend(figure: Figure, axis: Axes) -> None:
@@ -266,18 +194,3 @@ def legend_entries(axis: Axes) -> tuple[list[Any], list[str]]:
     for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
         labelled.setdefault(label, []).append(handle)
     return [tuple(handles) for handles in labelled.values()], list(labelled)
-
-
-def _caption(angle: str, frame: str, start: float, fitted: bool) -> str:
-    lines = (
-        " Solid: ordinary least squares; dashed: generalised least squares; shaded: 95 % "
-        "confidence band of each line, the GLS band paler. Below: residuals of the OLS line with "
-        "both lines and bands (GLS bands are wider where the errors of neighbouring images are "
-        "correlated)."
-        if fitted
-        else " No line could be fitted; the reason is given with the table of regressions."
-    )
-    return (
-        f"Error of {angle} (POS minus estimated, {frame} frame) over time, one sign per strip; the "
-        f"first exposure shown is at {fmt.count(start)} s.{lines}"
-    )

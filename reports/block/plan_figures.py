@@ -8,20 +8,21 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from posstats.arrays import Floats
 from posstats.contract.check_points import CheckPointResidual
-from posstats.contract.results import ModelParallax, Results
+from posstats.contract.results import Results
 from posstats.contract.survey import ImagePlace
 
 from ..document import format as fmt
 from ..document.drawing import Drawing
 from ..document.rows import rows
 from ..figures import style
-from ..figures.difference_plan import Panel, difference_plan, differences_m, places
+from ..figures.difference_plan import differences_m, places
 from ..figures.plan_view import (
     PlanView,
     arrow_scale,
@@ -32,6 +33,7 @@ from ..figures.plan_view import (
     view_of,
 )
 from .view import strips
+from .words import Words
 
 Label = tuple[Floats, str]  # middle in points, text
 
@@ -42,55 +44,27 @@ BESIDE_IN, BELOW_IN = 1.8, 0.95  # room for axis labels and colour bar, and for 
 BESIDE_TURNED_IN, BELOW_TURNED_IN = 0.9, 1.5  # the same with the colour bar below
 
 
-def block_plan(results: Results) -> Drawing | None:
+def block_plan(words: Words, results: Results) -> Drawing | None:
     """Plan with north up, or right if the block is long; None without image positions."""
     images = results.images
     if not images:
         return None
     view = view_of(images)
     height, width, points_per_metre = _sizes(view)
-    figure = style.new_figure(height, width)
-    axis = figure.add_subplot()
+    picture = style.new_figure(height, width)
+    axis = picture.add_subplot()
     _footprints(axis, view, images)
-    _models(figure, axis, view, results.models, images)
-    _strip_labels(axis, view, results, images, points_per_metre)
+    _models(words, picture, axis, view, results)
+    _strip_labels(axis, view, results, points_per_metre)
     points = rows(results.check_point_residuals, orientation="pos")
-    has_vectors = _check_points(axis, view, points)
-    view.dress(axis)
+    has_arrows = _check_points(axis, view, points)
+    view.dress(axis, (words.text("axis.east"), words.text("axis.north")))
     north_and_scale(axis, view)
-    vectors = (
-        " Arrows: horizontal differences at check points, computed from the POS as delivered minus "
-        "given, at the scale of the arrow above the plan."
-        if has_vectors
-        else ""
-    )
-    caption = (
-        f"Plan of the block{', north to the right' if view.turned else ''}. Dots: exposure "
-        "stations; lines: stereo models, coloured by the RMS vertical parallax from the POS as "
-        "delivered; grey outlines: image footprints; numbers: strips, at their first "
-        f"exposure.{vectors}"
-    )
-    return style.finish(figure, "plan", "Plan of the block", caption)
-
-
-def check_point_plan(results: Results) -> Drawing | None:
-    """Differences at check points before and after the selected correction, shift removed."""
-    words = {"pos": "POS as delivered", "selected": "after the selected correction"}
-    panels = [
-        Panel(title, rows(results.check_point_residuals, orientation=name))
-        for name, title in words.items()
-    ]
-    drawn = difference_plan(results.images, panels, ("east, m", "north, m"), centred=True)
-    if drawn is None:
-        return None
-    figure, turned = drawn
-    caption = (
-        "Differences at check points (computed minus given, mean difference removed). Solid blue: "
-        "horizontal; dashed orange: vertical, drawn towards north"
-        f"{' (right)' if turned else ''} where the computed point is too high. Each panel has "
-        "its own scale arrow."
-    )
-    return style.finish(figure, "check_points", "Differences at check points in plan", caption)
+    caption = words.sentences([
+        words.text("plan.turned" if view.turned else "plan.caption"),
+        words.text("plan.arrows") if has_arrows else "",
+    ])  # fmt: skip
+    return style.finish(picture, "plan", words.text("plan.title"), caption)
 
 
 def _sizes(view: PlanView) -> tuple[float, float, float]:
@@ -110,16 +84,10 @@ def _footprints(axis: Axes, view: PlanView, images: Sequence[ImagePlace]) -> Non
     polylines(axis, view, closed, color=style.LIGHT, lw=0.35, zorder=1)
 
 
-def _models(
-    figure: Figure,
-    axis: Axes,
-    view: PlanView,
-    models: Sequence[ModelParallax],
-    images: Sequence[ImagePlace],
-) -> None:
+def _models(words: Words, picture: Figure, axis: Axes, view: PlanView, results: Results) -> None:
     """Models as lines between their images, in classes of colour."""
-    place = {row.image: (row.x_m, row.y_m) for row in images}
-    pairs = [m for m in models if m.left in place and m.right in place]
+    place = {row.image: (row.x_m, row.y_m) for row in results.images}
+    pairs = [m for m in results.models if m.left in place and m.right in place]
     lines = [(place[m.left], place[m.right]) for m in pairs]
     values = [m.pos_px for m in pairs]
     edges = _classes(fmt.present(values))
@@ -134,7 +102,8 @@ def _models(
     size = 2.0 if len(place) < CROWDED else 1.2
     axis.plot(*view.drawn(place.values()), **style.dots(style.BLACK, size))
     if len(edges) > 1:
-        _colour_bar(figure, axis, view, edges, palette)
+        bar = _colour_bar(picture, axis, view, edges, palette)
+        bar.set_label(words.text("axis.model_parallax_of_pos"))
 
 
 def _classes(values: Sequence[float]) -> list[float]:
@@ -156,13 +125,12 @@ def _classes(values: Sequence[float]) -> list[float]:
 
 
 def _colour_bar(
-    figure: Figure, axis: Axes, view: PlanView, edges: list[float], palette: Colormap
-) -> None:
+    picture: Figure, axis: Axes, view: PlanView, edges: list[float], palette: Colormap
+) -> Colorbar:
     scale = ScalarMappable(BoundaryNorm(edges, palette.N), palette)
     place = "bottom" if view.turned else "right"
-    bar = figure.colorbar(scale, ax=axis, shrink=0.8, aspect=50 if view.turned else 26, pad=0.02,
+    bar = picture.colorbar(scale, ax=axis, shrink=0.8, aspect=50 if view.turned else 26, pad=0.02,
                           spacing="uniform", location=place)  # fmt: skip
-    bar.set_label("RMS vertical parallax of the model, px")
     bar.set_ticks(
         edges,
         labels=[
@@ -172,19 +140,19 @@ def _colour_bar(
     )
     bar.ax.minorticks_off()
     bar.outline.set_linewidth(0.5)
+    return bar
 
 
 def _strip_labels(
     axis: Axes,
     view: PlanView,
     results: Results,
-    images: Sequence[ImagePlace],
     points_per_metre: float,
 ) -> None:
     """Strip ids beside their first exposures, each where it covers none of the others."""
     taken: list[Label] = []
     for strip in strips(results):
-        stations = [(r.x_m, r.y_m) for r in images if r.strip == strip]
+        stations = [(r.x_m, r.y_m) for r in results.images if r.strip == strip]
         if not stations:
             continue
         text = fmt.shortened(strip, LABEL_LENGTH)

@@ -1,19 +1,23 @@
 """Everything that is written for one block: tables, figures, HTML and PDF."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
+from posstats.contract.choices import Language
 from posstats.contract.results import Results
 
+from ..document.drawing import Drawing
 from ..document.numbering import ReportDocument
 from ..pages import html
 from ..pages import pdf as pdf_writer
 from ..pages.garbage import garbage_kept
-from . import document as block_document
-from . import figures
 from .csv_files import write_tables
+from .document import build, drawings
 
 
-def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
+def write_report(
+    results: Results, folder: Path, *, language: Language = "en", pdf: bool = True
+) -> str:
     """Write ``tables/*.csv``, ``figures/*.svg``, ``report.html`` and ``report.pdf`` into a folder.
 
     Returns
@@ -24,9 +28,17 @@ def write_report(results: Results, folder: Path, *, pdf: bool = True) -> str:
     folder.mkdir(parents=True, exist_ok=True)
     with garbage_kept():
         write_tables(results, folder / "tables")
-        drawings = figures.draw(results)
-        figures.write_figures(results, folder / "figures", drawings)
-        return write_pages(block_document.build(results, drawings), folder / "report", pdf=pdf)
+        document = build(results, language)
+        write_figures(drawings(document), folder / "figures")
+        return write_pages(document, folder / "report", pdf=pdf)
+
+
+def write_figures(pictures: Iterable[Drawing], folder: Path) -> None:
+    """Write figures as ``<name>.svg`` into a folder, made if it does not exist."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in pictures:
+        text = f'<?xml version="1.0" encoding="utf-8"?>\n{each.svg}'
+        (folder / f"{each.name}.svg").write_text(text, encoding="utf-8")
 
 
 def write_pages(document: ReportDocument, path: Path, *, pdf: bool = True) -> str:

@@ -1,10 +1,11 @@
 """Sentences of the verdict: the angle that parallax comes from, and its error over time."""
 
-from posstats.contract.results import Regression, Results
+from posstats.contract.results import Regression
 
 from ..document import format as fmt
 from ..document.rows import first, rows
 from .view import mean_over_models
+from .words import BlockReport, Words
 
 NEAR_RELATIVE = 1.5  # up to this multiple of relative orientation's, parallax needs no correction
 SIGNIFICANT = 0.05
@@ -12,101 +13,93 @@ ALONE = 0.9  # share of the cause from which other angles need no word
 STEADY = 3.0  # strip effect over white noise from which the strips are what differs
 
 
-def cause(results: Results) -> str:
+def cause(report: BlockReport) -> str:
     """Which angle the parallax comes from, by what holding it leaves."""
-    numbers = results.verdict
-    name, raw, relative = numbers.cause, numbers.raw_px, numbers.relative_px
-    if name:
-        held = mean_over_models(rows(results.error_sources, fixed=name))
-        every = mean_over_models(rows(results.error_sources, fixed="angles"))
-        share = numbers.cause_share
-        most = share is not None and share < ALONE
-        text = f"{'Most of it comes' if most else 'The parallax comes'} from {name}"
-        if held is not None and every is not None:
-            text += (
-                f": relative orientation with {name} held at its POS value leaves "
-                f"{fmt.with_unit(held, 'px')}, with all three angles held "
-                f"{fmt.with_unit(every, 'px')}"
-            )
-        return f"{text}."
+    words, numbers = report.words, report.results.verdict
+    raw, relative = numbers.raw_px, numbers.relative_px
+    if numbers.cause:
+        return _named_cause(report, numbers.cause)
     if relative and raw is not None and raw / relative < NEAR_RELATIVE:
-        return "This is about as good as the images allow, and no angle stands out."
-    every = mean_over_models(rows(results.error_sources, fixed="angles"))
+        return words.text("cause.none")
+    every = _held(report, "angles")
     if relative and every is not None and every < NEAR_RELATIVE * relative:
-        return (
-            "It does not come from the angles: with all three held at their POS values, relative "
-            f"orientation still brings it down to {fmt.with_unit(every, 'px')}."
-        )
-    return "It cannot be laid to one angle alone: held one by one, several keep the parallax high."
+        return words.text("cause.not_angles", every=fmt.with_unit(every, "px"))
+    return words.text("cause.several")
 
 
-def over_time(results: Results) -> str:
+def _named_cause(report: BlockReport, angle: str) -> str:
+    words, share = report.words, report.results.verdict.cause_share
+    held, every = _held(report, angle), _held(report, "angles")
+    kind = "most" if share is not None and share < ALONE else "all"
+    if held is None or every is None:
+        return words.of("cause", kind, angle=angle)
+    values = {"held": fmt.with_unit(held, "px"), "every": fmt.with_unit(every, "px")}
+    return words.of("cause", f"{kind}_by_holding", angle=angle, **values)
+
+
+def _held(report: BlockReport, what: str) -> float | None:
+    """Mean parallax with POS angles held."""
+    return mean_over_models(rows(report.results.error_sources, fixed=what))
+
+
+def over_time(report: BlockReport) -> str:
     """Whether the error of the cause (or of every angle) follows time, by OLS and GLS."""
-    name = results.verdict.cause
+    words, name = report.words, report.results.verdict.cause
     if not name:
-        return _shares(results)
-    row = first(results.regression, angle=name, frame="ground", scope="block")
+        return _shares(report)
+    row = first(report.results.regression, angle=name, frame="ground", scope="block")
     if row is None or row.r_squared is None:
-        why = row and row.reason
-        return f"Whether its error follows time could not be tested{f' ({why})' if why else ''}."
-    evidence = (
-        f"R² = {fmt.fixed(row.r_squared, 3)}, {fmt.p_phrase(row.p_value)}, "
-        f"{row.n} images {_stretches(row)}"
-    )
+        if row and row.notice:
+            return words.text("time.untested_why", why=words.notice(row.notice))
+        return words.text("time.untested")
+    evidence = _evidence(words, row)
     if row.p_value is None or row.p_value >= SIGNIFICANT:
-        return _not_over_time(results, row, evidence)
-    middle = f"Its error is {fmt.angle(row.intercept_rad)} at mid-time"
-    change = fmt.rate(row.slope_rad_per_s)
-    return f"{middle} and follows time: it changes by {change} ({evidence}); {_surely(row)}."
+        return _not_over_time(report, row, evidence)
+    return words.text(
+        "time.follows",
+        error=fmt.angle(row.intercept_rad),
+        rate=fmt.rate(row.slope_rad_per_s),
+        evidence=evidence,
+        surely=_surely(words, row),
+    )
 
 
-def _stretches(row: Regression) -> str:
-    n = row.n_time_clusters
-    return "in one stretch of time" if n == 1 else f"in {fmt.count(n)} separate stretches of time"
+def _evidence(words: Words, row: Regression) -> str:
+    values = {"r_squared": fmt.fixed(row.r_squared, 3), "p": fmt.p_phrase(row.p_value),
+              "images": fmt.count(row.n)}  # fmt: skip
+    return words.counted("time.evidence", row.n_time_clusters or 0, **values)
 
 
-def _not_over_time(results: Results, row: Regression, evidence: str) -> str:
+def _not_over_time(report: BlockReport, row: Regression, evidence: str) -> str:
     """Size and mean of an error without drift; whether strips differ, as by a misalignment."""
+    words, results = report.words, report.results
     size = first(results.angle_error_summary, angle=row.angle, frame="ground")
     rms, mean = (size.rms_rad, size.mean_rad) if size else (None, None)
-    text = (
-        f"Its error is {fmt.angle(rms)} (RMS), {fmt.angle(mean)} "
-        f"on average, and does not follow time ({evidence})."
-    )
+    steady = words.text("time.steady", rms=fmt.angle(rms), mean=fmt.angle(mean), evidence=evidence)
     strip, white = row.strip_effect_sigma_rad, row.white_noise_sigma_rad
     if strip is None or white is None or strip < STEADY * white:
-        return text
-    text += (
-        f" It differs from strip to strip (standard deviation {fmt.angle(strip)}) far more than "
-        "within the strips"
-    )
-    if results.settings.frame_setting != "ground":
-        return f"{text}."
-    return (
-        f"{text}: a misalignment of the camera, constant about the camera's axes, would look like "
-        "this (to test it: --frame auto --rules strict)."
-    )
+        return steady
+    was_tried = results.settings.frame_setting != "ground"
+    differs = "time.strips_differ" if was_tried else "time.like_misalignment"
+    return words.sentences([steady, words.text(differs, sigma=fmt.angle(strip))])
 
 
-def _surely(row: Regression) -> str:
+def _surely(words: Words, row: Regression) -> str:
     low, high = row.gls_slope_ci95 or (None, None)
     if low is None or high is None:
-        return "with correlated errors allowed for, no interval can be given"
+        return words.text("surely.unknown")
     unit = fmt.rate_unit([low, high])
-    ends = f"{fmt.number(unit.scaled(low))} to {fmt.number(unit.scaled(high))}"
-    zero = "includes zero, so a drift is not proven" if low <= 0.0 <= high else "excludes zero"
-    return (
-        f"with correlated errors allowed for, the 95 % interval of this rate, "
-        f"({ends})\u00a0×\u00a0{unit.name}, {zero}"
-    )
+    ends = words.interval(fmt.number(unit.scaled(low)), fmt.number(unit.scaled(high)))
+    said = "surely.not" if low <= 0.0 <= high else "surely.yes"
+    return words.text(said, ends=ends, unit=unit.name)
 
 
-def _shares(results: Results) -> str:
+def _shares(report: BlockReport) -> str:
     tested = [
         f"{row.angle} {fmt.fixed(row.r_squared, 2)}"
-        for row in rows(results.regression, frame="ground", scope="block")
+        for row in rows(report.results.regression, frame="ground", scope="block")
         if not fmt.is_missing(row.r_squared)
     ]
     if not tested:
-        return "Whether the angle errors follow time could not be tested."
-    return f"A line over time explains this share (R²) of the angle errors: {fmt.joined(tested)}."
+        return report.words.text("time.none_tested")
+    return report.words.text("time.shares", shares=report.words.joined(tested))

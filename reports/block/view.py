@@ -1,24 +1,15 @@
-"""Reading results: order of strips, means over models, names of angles and orientations."""
+"""Reading results: order of strips, means over models, names of angles, errors over time."""
 
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from posstats.contract.results import ImageAngleErrors, Results
 
+from ..document import format as fmt
+
 GROUND_ANGLES = ("omega", "phi", "kappa")
 CAMERA_ANGLES = ("pitch", "roll", "yaw")
-METHODS = {
-    "pos": "POS as delivered",
-    "independent": "Independent orientation",
-    "dependent": "Dependent orientation",
-}
-FIXED = {
-    "angles": "all three angles held",
-    "omega": "omega held",
-    "phi": "phi held",
-    "kappa": "kappa held",
-    "none": "none held",
-}
+HELD = ("angles", "omega", "phi", "kappa", "none")  # in the order of showing
 
 
 class StripMean(Protocol):
@@ -78,8 +69,21 @@ def mean_over_models(per_strip: Iterable[StripMean | None], unit: str = "px") ->
     return sum(n * mean for n, mean in known) / weight if weight else None
 
 
-def error_of(row: ImageAngleErrors, angle: str) -> float | None:
-    """The error of an angle, rad."""
+def used_errors(results: Results, angle: str) -> list[ImageAngleErrors]:
+    """Images whose error of an angle is determined."""
+    return [
+        row
+        for row in results.angle_errors
+        if row.used and not fmt.is_missing(_error_of(row, angle))
+    ]
+
+
+def errors_of(data: Sequence[ImageAngleErrors], angle: str) -> list[float]:
+    """Errors of an angle, rad, of images where it is determined."""
+    return fmt.present(_error_of(row, angle) for row in data)
+
+
+def _error_of(row: ImageAngleErrors, angle: str) -> float | None:
     error: float | None = getattr(row, f"{angle}_rad")
     return error
 
@@ -92,19 +96,3 @@ def decided_by_strip(results: Results) -> bool:
 def angles(frame: str) -> tuple[str, str, str]:
     """Names of the three angles in a frame."""
     return CAMERA_ANGLES if frame == "camera" else GROUND_ANGLES
-
-
-def orientation_label(orientation: str, chosen: Sequence[str] = ()) -> str:
-    """An orientation or correction in words; `chosen` are the angles that were corrected."""
-    words = {
-        "pos": "POS as delivered",
-        "selected": f"selected ({' + '.join(chosen)})" if chosen else "selected (none)",
-        "adjusted": "adjusted orientation",
-        "bundle": "bundle block adjustment",
-    }
-    return words.get(orientation, f"{orientation} corrected")
-
-
-def scope_label(scope: str) -> str:
-    """``block``, or the strip in words."""
-    return "block" if scope == "block" else f"strip {scope}"

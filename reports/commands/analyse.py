@@ -5,6 +5,7 @@ from pathlib import Path
 
 from posstats.adjustment.calibration import calibrated
 from posstats.analysis.steps import analyse
+from posstats.contract.choices import Language
 from posstats.formats.block_folder import read_block
 from posstats.settings import Settings
 
@@ -18,7 +19,13 @@ from .command_line import written
 
 
 def analyse_block(
-    folder: Path, out: Path, settings: Settings, calibration: Path | None, *, pdf: bool
+    folder: Path,
+    out: Path,
+    settings: Settings,
+    calibration: Path | None,
+    *,
+    language: Language,
+    pdf: bool,
 ) -> Iterator[str]:
     """Analyse a block folder into `out`; yields the lines of the terminal summary."""
     with (
@@ -31,6 +38,6 @@ def analyse_block(
         analysis = analyse(block, settings, progress=lambda step, done: progress(step, 0.7 * done))
         values = write_analysis(analysis, stage, created=now())
         progress("writing the report", 0.75)
-        missing = write_report(values, stage, pdf=pdf)
+        missing = write_report(values, stage, language=language, pdf=pdf)
     yield from summary(values)
     yield from written(out, "report", missing, pdf=pdf)

@@ -96,6 +96,13 @@ def cli() -> None:
     help="Resist blunders in the tie points, or plain least squares.",
 )
 @calibration_option
+@click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of the report and its figures; results.json stays English.",
+)
 @no_pdf_option("report")
 @clear_errors
 def analyse(
@@ -107,6 +114,7 @@ def analyse(
     frame: FrameChoice,
     robust: bool,
     calibration: Path | None,
+    language: Language,
     no_pdf: bool,
 ) -> None:
     """Analyse the block folder BLOCK and write its report.
@@ -124,7 +132,9 @@ def analyse(
 
     settings = Settings(rules=rules, scope=scope, errors=errors, frame=frame, robust=robust)
     target = out or default_out(block)
-    for line in analyse_block(block, target, settings, calibration, pdf=not no_pdf):
+    for line in analyse_block(
+        block, target, settings, calibration, language=language, pdf=not no_pdf
+    ):
         click.echo(line)
 
 

@@ -62,7 +62,7 @@ class PlanView:
         up = self.east - y if self.turned else y - self.south
         return np.column_stack([x - self.left_m, up])
 
-    def dress(self, axis: Axes, names: tuple[str, str] = ("east, m", "north, m")) -> None:
+    def dress(self, axis: Axes, names: tuple[str, str]) -> None:
         """Limits, scale, ticks and the names of the coordinates (east, north)."""
         sides = [(self.west, self.east), (self.south, self.north)]
         if self.turned:

@@ -134,8 +134,8 @@ def plain_ticks(axis: Axes) -> None:
         side.set_major_formatter(FuncFormatter(lambda value, _: fmt.count(value)))
 
 
-def strip_ticks(axis: Axes, centres: Sequence[float], strips: Sequence[str]) -> None:
-    """Strip ids under their places, turned where they would touch, shortened where too long."""
+def strip_ticks(axis: Axes, centres: Sequence[float], strips: Sequence[str], name: str) -> None:
+    """Name of an axis, and strip ids: turned where they would touch, shortened where too long."""
     labels = [shortened(strip) for strip in strips]
     crowded = sum(len(label) + 2 for label in labels) > 90
     axis.xaxis.set_major_locator(FixedLocator(list(centres)))
@@ -143,7 +143,7 @@ def strip_ticks(axis: Axes, centres: Sequence[float], strips: Sequence[str]) -> 
         list(centres), labels, rotation=90 if crowded else 0, fontsize=6.5 if crowded else 7.5
     )
     axis.tick_params(axis="x", length=0)
-    axis.set_xlabel("strip")
+    axis.set_xlabel(name)
 
 
 def legend_below(figure: Figure, axis: Axes, columns: int) -> None:

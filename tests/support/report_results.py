@@ -1,14 +1,15 @@
 """Results for the tests of the reports: made by formula, of the contract's own types."""
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from report_check_points import check_point_residuals, check_points
+from report_regression import ANGLES, regressions
 
-from posstats.contract.check_points import CheckPointResidual, CheckPointStatistics
+from posstats.contract.notice import listing
 from posstats.contract.results import (
     AnalysedBlock,
     AnalysisSettings,
@@ -18,7 +19,6 @@ from posstats.contract.results import (
     ImageAngleErrors,
     ModelParallax,
     Observability,
-    Regression,
     Results,
     Selection,
     StripParallax,
@@ -26,9 +26,11 @@ from posstats.contract.results import (
     Verdict,
 )
 from posstats.contract.survey import ImagePlace, InputFile
+from posstats.reports.block.wording import warnings
+
+NOTICES = listing("models_with_few_points", ["3_07 - 3_08"], n_needed=6)
 
 PIXEL_MM = 0.012
-ANGLES = ("omega", "phi", "kappa")
 _HELD = {"angles": 22.7, "omega": 22.4, "phi": 0.31, "kappa": 0.47, "none": 0.28}
 _CORRECTED = {"omega": 0.40, "phi": 22.6, "kappa": 22.5, "selected": 0.40}
 
@@ -65,7 +67,7 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> Resul
         angle_errors=errors,
         angle_error_summary=_summary(errors),
         bundle=None,
-        regression=_regression(errors, strips),
+        regression=regressions(errors, strips),
         frames=(),
         selection=(
             _decision("omega", "linear", "R2 0.98 reaches 0.8 and p < 0.001 is below 0.05"),
@@ -77,16 +79,22 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> Resul
             for s in strips
             for name, value in _CORRECTED.items()
         ),
-        check_points=_check_points(),
-        check_point_residuals=_residuals(images, rng),
+        check_points=check_points(),
+        check_point_residuals=check_point_residuals(images, rng),
         observability=(
             Observability(scope="block", images=()),
             *(
-                Observability(scope=s, unobservable=("rotation about the base axis",), images=())
+                Observability(
+                    scope=s,
+                    unobservable=("rotation about the base axis",),
+                    rotations=("about_base_axis",),
+                    images=(),
+                )
                 for s in strips
             ),
         ),
-        warnings=("Strip 3: image 3_07 has fewer than 6 points in common with its neighbour.",),
+        warnings=warnings(NOTICES),
+        notices=NOTICES,
     )
 
 
@@ -111,7 +119,7 @@ def coarse_results() -> Results:
         error_sources=tuple(_coarse_mean(row, single) for row in results.error_sources),
         corrected_parallax=tuple(_coarse_mean(row, single) for row in results.corrected_parallax),
         angle_error_summary=_summary([row for row in errors if row.used]),
-        regression=_regression(errors, [str(k + 1) for k in range(17)]),
+        regression=regressions(errors, [str(k + 1) for k in range(17)]),
         selection=tuple(_decision(angle, "none", "R2 0.02 is below 0.8") for angle in ANGLES),
         check_points=(),
         check_point_residuals=(),
@@ -332,119 +340,4 @@ def _summary(errors: Sequence[ImageAngleErrors]) -> tuple[AngleErrorSummary, ...
                 median_sigma_rad=getattr(errors[0], f"sigma_{angle}_rad"),
             )
         )
-    return tuple(made)
-
-
-def _regression(errors: Sequence[ImageAngleErrors], strips: list[str]) -> tuple[Regression, ...]:
-    made = []
-    for angle in ANGLES:
-        for scope in ("block", *strips):
-            part = [row for row in errors if row.used and scope in ("block", row.strip)]
-            made.append(_line(angle, scope, part))
-    return tuple(made)
-
-
-def _line(angle: str, scope: str, part: Sequence[ImageAngleErrors]) -> Regression:
-    known = dict.fromkeys(Regression.__dataclass_fields__)
-    known |= {"angle": angle, "frame": "ground", "scope": scope, "n": len(part), "df_model": 1.0}
-    known |= {"n_strips": len({row.strip for row in part}), "n_time_clusters": 1}
-    known |= {"covariance_known": True}
-    if len(part) < 3:
-        return Regression(**known | {"reason": "fewer than 3 images with a determined error"})
-    return Regression(**known | _fit(angle, scope, part) | {"n_time_clusters": known["n_strips"]})
-
-
-def _fit(angle: str, scope: str, part: Sequence[ImageAngleErrors]) -> dict[str, Any]:
-    t = np.array([row.time_s for row in part])
-    y = np.array([getattr(row, f"{angle}_rad") for row in part])
-    n, origin = len(t), float(t.mean())
-    s_tt = float(((t - origin) ** 2).sum())
-    slope = float(((t - origin) * (y - y.mean())).sum() / s_tt)
-    residual = y - y.mean() - slope * (t - origin)
-    sigma = math.sqrt(float(residual @ residual) / (n - 2))
-    se = sigma / math.sqrt(s_tt)
-    f_statistic = (slope / se) ** 2
-    return {
-        "intercept_rad": float(y.mean()),
-        "slope_rad_per_s": slope,
-        "time_origin_s": origin,
-        "r_squared": f_statistic / (f_statistic + n - 2),
-        "f_statistic": f_statistic,
-        "df_resid": float(n - 2),
-        "p_value": math.erfc(math.sqrt(f_statistic / 2.0)),
-        "slope_se": se,
-        "slope_ci95": (slope - 1.97 * se, slope + 1.97 * se),
-        "gls_slope_rad_per_s": slope * 1.01,
-        "gls_slope_se": 5.0 * se,
-        "gls_slope_ci95": (slope * 1.01 - 9.8 * se, slope * 1.01 + 9.8 * se),
-        "gls_p_value": math.erfc(math.sqrt(f_statistic / 50.0)),
-        "intercept_se_rad": sigma / math.sqrt(n),
-        "cov_intercept_slope": 0.0,
-        "sigma_rad": sigma,
-        "gls_intercept_rad": float(y.mean()) + sigma / 10.0,
-        "gls_intercept_se": 5.0 * sigma / math.sqrt(n),
-        "gls_cov_intercept_slope": 0.0,
-        "gls_df_resid": float(n - 2),
-        "white_noise_sigma_rad": 0.8 * sigma,
-        "strip_effect_sigma_rad": 0.3 * sigma if scope == "block" else None,
-        "constant_rad": float(y.mean()),
-        "constant_se_rad": sigma / math.sqrt(n),
-    }
-
-
-def _check_points() -> tuple[CheckPointStatistics, ...]:
-    made = []
-    sizes = {"pos": 7.1, "omega": 0.96, "phi": 7.0, "kappa": 7.2, "selected": 0.96}
-    for orientation, size in sizes.items():
-        for removed in (True, False):
-            shift = (12.3 * size, -168.0 if size > 5 else -1.2, 3.4)
-            scale = size if removed else size + math.hypot(shift[0], shift[1])
-            made.append(
-                CheckPointStatistics(
-                    orientation=orientation,
-                    translation_removed=removed,
-                    n=15,
-                    max_horizontal_m=1.9 * scale,
-                    max_vertical_m=2.1 * scale,
-                    min_horizontal_m=0.2 * scale,
-                    min_vertical_m=0.1 * scale,
-                    rmse_horizontal_m=scale,
-                    rmse_vertical_m=1.34 * scale,
-                    shift_m=shift,
-                )
-            )
-    return tuple(made)
-
-
-def _residuals(
-    images: Sequence[ImagePlace], rng: np.random.Generator
-) -> tuple[CheckPointResidual, ...]:
-    x = [image.x_m for image in images]
-    y = [image.y_m for image in images]
-    places = [
-        (float(rng.uniform(min(x), max(x))), float(rng.uniform(min(y), max(y)))) for _ in range(15)
-    ]
-    made = []
-    for orientation, size in (("pos", 7.1), ("omega", 0.96), ("selected", 0.96)):
-        for k, (px, py) in enumerate(places):
-            dx, dy, dz = rng.normal(0.0, size / 1.4, 3)
-            made.append(
-                CheckPointResidual(
-                    orientation=orientation,
-                    point=f"CP{k + 1:02d}",
-                    n_rays=int(rng.integers(2, 7)),
-                    status="ok",
-                    survey_sigma_xy_m=None,
-                    survey_sigma_z_m=None,
-                    x_m=px,
-                    dx_m=float(dx) + (80.0 if orientation == "pos" else 0.3),
-                    sigma_x_m=0.3,
-                    y_m=py,
-                    dy_m=float(dy) - (150.0 if orientation == "pos" else 0.2),
-                    sigma_y_m=0.3,
-                    z_m=120.0,
-                    dz_m=float(dz) * 1.3,
-                    sigma_z_m=0.6,
-                )
-            )
     return tuple(made)

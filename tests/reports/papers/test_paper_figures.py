@@ -11,8 +11,9 @@ from matplotlib.textpath import TextPath
 from report_results import ANGLES, area_results, with_rows
 from scipy import stats
 
-from posstats.reports.block import bar_figures as figure_parallax
+from posstats.reports.block import error_sources
 from posstats.reports.block.line_figures import Panel, generalised, ordinary
+from posstats.reports.block.words import words_in
 from posstats.reports.document.format import MICRORADIAN
 from posstats.reports.papers.drift.figures import draw_area
 
@@ -198,7 +199,7 @@ def test_the_band_is_the_confidence_interval_of_the_line(results, drawn, angle):
 def test_among_residuals_the_ols_line_is_zero_and_the_gls_line_their_difference(results):
     row = _block_row(results, "omega")
     axis = Figure().add_subplot()
-    panel = Panel(axis, MICRORADIAN, start_s=57000.0)
+    panel = Panel(axis, MICRORADIAN, 57000.0, ("ordinary", "generalised"))
     panel.fit([57000.0, 58000.0], ordinary(row), generalised(row), zero=ordinary(row))
     ols, gls = axis.lines
     drawn_at = np.asarray(gls.get_xdata()) + 57000.0
@@ -306,7 +307,7 @@ def test_ids_too_many_for_the_room_are_written_under_some_bars():
 
 def test_zero_parallax_has_no_place_on_a_logarithmic_scale(results):
     exact = with_rows(results, "error_sources", lambda row: replace(row, mean_px=0.0))
-    assert figure_parallax.error_sources(exact) is None
+    assert error_sources.figure(words_in("en"), exact) is None
 
 
 def test_pictures_of_a_large_area_are_small():
