@@ -1,7 +1,6 @@
 """Groups of bars in the words of the report on the first paper."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 
 from posstats.contract.results import Results
 
@@ -34,11 +33,9 @@ def drawn(
     return style.finish(figure, name, *said)
 
 
-def named(words: Words, bars: Sequence[Bars], keys: Sequence[str]) -> list[Bars]:
-    """The groups with labels of the catalogue."""
-    return [
-        replace(each, label=words.of("bars", key)) for each, key in zip(bars, keys, strict=True)
-    ]
+def titles(words: Words, groups: Mapping[str, str]) -> dict[str, str]:
+    """Titles of groups by the names that the results have for them."""
+    return {name: words.of("bars", key) for name, key in groups.items()}
 
 
 def percent(part: Bars, whole: Bars) -> str:

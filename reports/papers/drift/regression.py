@@ -6,15 +6,8 @@ from posstats.contract.results import Regression, Results
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.drift.findings import known, only_row
 
-from ...block.line_figures import (
-    Panel,
-    errors_of,
-    generalised,
-    legend_entries,
-    ordinary,
-    used_errors,
-)
-from ...block.view import strips
+from ...block.line_figures import Panel, generalised, legend_entries, ordinary
+from ...block.view import errors_of, strips, used_errors
 from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
