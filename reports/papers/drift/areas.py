@@ -6,22 +6,12 @@ from posstats.papers.drift.areas import area_scenario
 from posstats.papers.drift.reproduction import Reproduction
 from posstats.synthetic import Scenario
 
-<<<<<<< HEAD
-from ...block.csv_files import write_tables
-from ...block.document import build, drawings
-from ...block.folder import write_analysis
-from ...block.report import write_figures
-from ...document.drawing import Drawing
-from ...output.progress import progress_bar
-from . import figures as paper_figures
-=======
 from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.table import Column, Table, text_column
 from .columns import compared
 from .report import Report
 from .words import Words
->>>>>>> h-pap
 
 _DECIMALS = {
     "principal_distance_mm": 1,
@@ -82,41 +72,6 @@ def table(words: Words, run: Reproduction) -> Table:
     return Table("areas", words.text("areas.caption"), tuple(columns))
 
 
-<<<<<<< HEAD
-def _reported(
-    pool: ProcessPoolExecutor,
-    analysed: Mapping[Future[_Numbers], int],
-    folder: Path,
-    progress: Callable[[str, float], None],
-) -> Mapping[int, AreaOutput]:
-    """Have each area's files written as soon as it is analysed, by whichever process is free."""
-    numbers: dict[int, _Numbers] = {}
-    drawn: dict[int, Future[tuple[Drawing, ...]]] = {}
-    for done, future in enumerate(as_completed(analysed), start=1):
-        area = analysed[future]
-        numbers[area] = future.result()
-        drawn[area] = pool.submit(_written, area, numbers[area][0], folder / f"area{area}")
-        progress(f"area {area} analysed", 0.7 * done / len(analysed))
-    return {area: AreaOutput(*numbers[area], drawn[area].result()) for area in AREAS}
-
-
-def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
-    analysis = run_area(area, seed)
-    causes = true_causes(analysis.block, analysis.models)
-    return write_analysis(analysis, folder, created=created), causes
-
-
-def _written(area: int, values: Results, folder: Path) -> tuple[Drawing, ...]:
-    write_tables(values, folder / "tables")
-    write_figures(drawings(build(values)), folder / "figures")
-    return paper_figures.draw_area(area, values)
-
-
-def _obey_parent() -> None:
-    """Leave Ctrl-C to the parent, and end at once when it says so."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-=======
 def errors(words: Words, run: Reproduction) -> Table:
     """What the simulation adds to the truth: the parameters that were fitted."""
     names = [words.text(name) for name in _CHOSEN]
@@ -127,4 +82,3 @@ def errors(words: Words, run: Reproduction) -> Table:
         columns.append(Column(words.area_title(area), cells))
     notes = (words.text("errors.note"),)
     return Table("simulated_errors", words.text("errors.caption"), tuple(columns), notes)
->>>>>>> h-pap

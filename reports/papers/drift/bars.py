@@ -1,7 +1,6 @@
 """Groups of bars in the words of the report on the first paper."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from posstats.contract.results import Results
 
@@ -32,13 +31,6 @@ def drawn(
     names = (words.text("bars.strip"), words.text("bars.parallax"))
     figure = bar_figure(bars, strips_with_models(results), "mm", names)
     return style.finish(figure, name, *said)
-
-
-def named(words: Words, bars: Sequence[Bars], keys: Sequence[str]) -> list[Bars]:
-    """The groups with labels of the catalogue."""
-    return [
-        replace(each, label=words.of("bars", key)) for each, key in zip(bars, keys, strict=True)
-    ]
 
 
 def percent(part: Bars, whole: Bars) -> str:

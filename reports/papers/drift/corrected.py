@@ -9,12 +9,16 @@ from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
-from .bars import drawn, named, percent
+from .bars import drawn, percent
 from .columns import millimetres
 from .report import Report
 from .words import Words
 
-_SHOWN = ("pos", *(f"{angle}_corrected" for angle in ANGLE_NAMES), "relative")
+_SHOWN = {
+    "pos": "pos",
+    **{angle: f"{angle}_corrected" for angle in ANGLE_NAMES},
+    "independent": "relative",
+}
 
 
 def topic(words: Words, report: Report) -> Part:
@@ -54,7 +58,8 @@ def table(words: Words, run: Reproduction) -> Table:
 
 def figure(words: Words, area: int, results: Results) -> Drawing:
     """Figure 3 of an area."""
-    bars = named(words, corrections(results, "mm", ANGLE_NAMES), _SHOWN)
+    titles = {name: words.of("bars", key) for name, key in _SHOWN.items()}
+    bars = corrections(results, "mm", titles)
     pos, omega, phi, kappa, relative = bars
     title = words.text("corrected.figure_title", area=str(area))
     caption = words.text(

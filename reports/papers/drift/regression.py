@@ -8,13 +8,11 @@ from posstats.papers.drift.findings import known, only_row
 
 from ...block.line_figures import (
     Panel,
-    errors_of,
     generalised,
     legend_entries,
     ordinary,
-    used_errors,
 )
-from ...block.view import strips
+from ...block.view import errors_of, strips, used_errors
 from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing

@@ -13,9 +13,10 @@ from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 
-from ...block import figures
 from ...block.csv_files import write_tables
+from ...block.document import build, drawings
 from ...block.folder import write_analysis
+from ...block.report import write_figures
 from ...document.drawing import Drawing
 from ...output.progress import progress_bar
 from .figures import draw_area
@@ -95,7 +96,7 @@ def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
 
 def _written(area: int, values: Results, folder: Path, language: Language) -> tuple[Drawing, ...]:
     write_tables(values, folder / "tables")
-    figures.write_figures(values, folder / "figures")
+    write_figures(drawings(build(values)), folder / "figures")
     return draw_area(words_in(language), area, values)
 
 

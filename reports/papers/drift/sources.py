@@ -9,7 +9,7 @@ from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
-from .bars import drawn, named, percent
+from .bars import drawn, percent
 from .columns import millimetres
 from .report import Report
 from .words import Words
@@ -49,7 +49,7 @@ def table(words: Words, run: Reproduction) -> Table:
 
 def figure(words: Words, area: int, results: Results) -> Drawing:
     """Figure 1 of an area."""
-    bars = named(words, held_angles(results, "mm"), _HELD)
+    bars = held_angles(results, "mm", {held: words.of("bars", held) for held in _HELD})
     every, omega, phi, kappa, none = bars
     title = words.text("sources.figure_title", area=str(area))
     caption = words.text(
