@@ -143,7 +143,7 @@ def test_every_published_number_is_compared_once(comparison):
 def test_reproduced_strip_statistics_are_those_of_the_models(comparison, results):
     """Table 2 against the models' own values, not against the rows it is made from."""
     for area, pixel_mm in ((1, 0.012), (2, 0.012), (3, 0.009)):
-        for strip in {row["strip"] for row in published(2, area=area)}:
+        for strip in {row.strip for row in published(2, area=area)}:
             models = [row for row in results[area].models if row.strip == strip]
             rms_mm = np.array([model.pos_px for model in models]) * pixel_mm
             expected = {"max": rms_mm.max(), "min": rms_mm.min(), "mean": rms_mm.mean()}
