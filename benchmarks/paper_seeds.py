@@ -20,7 +20,7 @@ from posstats.papers.drift.areas import AREAS, area_scenario, run_area, true_cau
 from posstats.papers.drift.findings import CRITERIA, AreaFindings, find
 from posstats.papers.drift.seeds import write
 
-STORED = Path(__file__).parents[1] / "posstats" / "experiment" / "seeds.csv"
+STORED = Path(__file__).parents[1] / "posstats" / "papers" / "drift" / "seeds.csv"
 
 
 def main() -> None:

@@ -1,6 +1,6 @@
 """Repeat the second paper's experiment with many seeds and store what each situation showed.
 
-Writes posstats/wucaps/seeds.csv, from which `posstats wucaps` states how often its findings come
+Writes posstats/papers/wucaps/seeds.csv, from which `posstats wucaps` states how often its findings come
 out and whether covariances predict accuracies. To be run again whenever a scenario or the
 adjustment changes its numbers:
 
@@ -23,7 +23,7 @@ from posstats.papers.wucaps.findings import CRITERIA, SituationFindings, find
 from posstats.papers.wucaps.seeds import write
 from posstats.papers.wucaps.situations import SITUATIONS, Situation
 
-STORED = Path(__file__).parents[1] / "posstats" / "wucaps" / "seeds.csv"
+STORED = Path(__file__).parents[1] / "posstats" / "papers" / "wucaps" / "seeds.csv"
 
 
 def main() -> None:

@@ -14,13 +14,18 @@ from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from msgspec import UnsetType
+
 PAGES = Path(__file__).parent
 DOCUMENTS = {
     "acceptance": "Acceptance",
     "adjustment": "AdjustmentResults",
+    "comparison": "Comparison",
     "results": "Results",
+    "wucaps": "Wucaps",
 }
 MARKED = re.compile(r"(<!-- keys: (\w+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+UNNAMED = (type(None), UnsetType)
 _PLAIN = {str: "text", float: "number", int: "whole number", bool: "`true`, `false`"}
 
 
@@ -75,7 +80,7 @@ def _type(hint: Any) -> str:
     """A type in the words of a reader of JSON."""
     hint, _ = _described(hint)
     if get_origin(hint) in (Union, types.UnionType):
-        parts = [_type(each) for each in get_args(hint) if each is not type(None)]
+        parts = [_type(each) for each in get_args(hint) if each not in UNNAMED]
         optional = type(None) in get_args(hint)
         return ", ".join([*dict.fromkeys(parts), *(["`null`"] if optional else [])])
     if get_origin(hint) is Literal:

@@ -179,7 +179,7 @@ class Bundle:
             " positions and control points"
         ),
     ]
-    dof: Annotated[float, about("their degrees of freedom; the priors of the angles do not count")]
+    dof: Annotated[int, about("their degrees of freedom; the priors of the angles do not count")]
     p_value: Annotated[float | None, about("two-sided, of the chi-square test of `sigma0` = 1")]
     image_rms_px: Annotated[float | None, about("root mean square residual of an image coordinate")]
     sigma_image_px: Annotated[
@@ -218,7 +218,7 @@ class Regression:
     cov_intercept_slope: Annotated[float | None, about("covariance of both, rad²/s")]
     r_squared: Annotated[float | None, about("eq. 3")]
     f_statistic: Annotated[float | None, about("eq. 4")]
-    df_model: Annotated[float | None, about("degrees of freedom of the model")]
+    df_model: Annotated[int | None, about("degrees of freedom of the model")]
     df_resid: Annotated[float | None, about("degrees of freedom of the residuals")]
     p_value: Annotated[float | None, about("P(F > f_statistic)")]
     sigma_rad: Annotated[float | None, about("residual standard deviation")]

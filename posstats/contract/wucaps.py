@@ -14,7 +14,7 @@ SCHEMA = "posstats-wucaps/1"
 
 @dataclass(frozen=True, kw_only=True)
 class SituationRow:
-    """One way of orienting one situation; without check points there are no measures."""
+    """One way of orienting one situation; singular normal equations leave no accuracies."""
 
     situation: Annotated[str, about("`flat` or `mountain`")]
     method: Annotated[str, about("how it was oriented")]

@@ -9,10 +9,13 @@ that does it itself changes nothing.
 from collections.abc import Iterator
 from typing import Any
 
-Node = dict[str, Any]
+# Of pydyf, which has no types: a document, and what may stand in it.
+Pdf = Any
+Value = Any
+Node = dict[str, Value]
 
 
-def mend(_document: Any, pdf: Any) -> None:
+def mend(_document: object, pdf: Pdf) -> None:
     """Complete a `pydyf.PDF`; WeasyPrint's ``finisher``."""
     _compress_streams(pdf)
     _forbid_interpolation(pdf)
@@ -22,23 +25,23 @@ def mend(_document: Any, pdf: Any) -> None:
     _mark_running_headers(pdf)
 
 
-def _resolved(pdf: Any, reference: Any) -> Any:
+def _resolved(pdf: Pdf, reference: Value) -> Value:
     """The object that ``b"12 0 R"`` names; anything else is returned as it is."""
     text = reference if isinstance(reference, bytes) else b""
     return pdf.objects[int(text.split()[0])] if text.endswith(b" 0 R") else reference
 
 
-def _streams(pdf: Any) -> Iterator[Any]:
+def _streams(pdf: Pdf) -> Iterator[Value]:
     return (each for each in pdf.objects if hasattr(each, "stream") and hasattr(each, "extra"))
 
 
-def _elements(pdf: Any) -> Iterator[Any]:
+def _elements(pdf: Pdf) -> Iterator[Value]:
     for each in pdf.objects:
         if isinstance(each, dict) and each.get("Type") == "/StructElem":
             yield each
 
 
-def _compress_streams(pdf: Any) -> None:
+def _compress_streams(pdf: Pdf) -> None:
     """One by one: objects in object streams could not be checked before they are unpacked.
 
     Metadata stay readable for programs that know nothing of PDF.
@@ -48,20 +51,20 @@ def _compress_streams(pdf: Any) -> None:
             stream.compress = True
 
 
-def _forbid_interpolation(pdf: Any) -> None:
+def _forbid_interpolation(pdf: Pdf) -> None:
     """ISO 19005-3, 6.2.8: an image's Interpolate is false."""
     for stream in _streams(pdf):
         if stream.extra.get("Interpolate") == "true":
             stream.extra["Interpolate"] = "false"
 
 
-def _list_files_once(pdf: Any) -> None:
+def _list_files_once(pdf: Pdf) -> None:
     files = pdf.catalog.get("AF")
     if files is not None:
         files[:] = list(dict.fromkeys(files))
 
 
-def _scope_headers(pdf: Any) -> None:
+def _scope_headers(pdf: Pdf) -> None:
     """A header cell in a row with other cells heads the row, else its column."""
     for row in _elements(pdf):
         if row["S"] != "/TR":
@@ -73,7 +76,7 @@ def _scope_headers(pdf: Any) -> None:
                 cell["A"].setdefault("Scope", scope)
 
 
-def _add_id_tree(pdf: Any) -> None:
+def _add_id_tree(pdf: Pdf) -> None:
     """ISO 32000-1, table 322: required where elements have ids, which /Headers refer to."""
     root = _resolved(pdf, pdf.catalog["StructTreeRoot"])
     named = [(each["ID"], each.reference) for each in _elements(pdf) if "ID" in each]
@@ -87,7 +90,7 @@ def _add_id_tree(pdf: Any) -> None:
     root["IDTree"] = tree.reference
 
 
-def _mark_running_headers(pdf: Any) -> None:
+def _mark_running_headers(pdf: Pdf) -> None:
     """What stands in page margins belongs to no element: an artifact, ISO 32000-1, 14.8.2.2."""
     root = _resolved(pdf, pdf.catalog["StructTreeRoot"])
     inside = _below(pdf, root)
@@ -102,7 +105,7 @@ def _mark_running_headers(pdf: Any) -> None:
         marks[:] = ["null" if mark in outside else each for mark, each in enumerate(marks)]
 
 
-def _below(pdf: Any, root: Node) -> set[bytes]:
+def _below(pdf: Pdf, root: Node) -> set[bytes]:
     """References of all elements of the structure."""
     found: set[bytes] = set()
     open_ends = list(root["K"])
@@ -114,7 +117,7 @@ def _below(pdf: Any, root: Node) -> set[bytes]:
     return found
 
 
-def _as_artifacts(content: list[Any], marks: set[int]) -> None:
+def _as_artifacts(content: list[Value], marks: set[int]) -> None:
     """Turn ``/Tag <</MCID n>> BDC`` of the marks into ``/Artifact BMC``."""
     for place, item in enumerate(content):
         if isinstance(item, dict) and item.get("MCID") in marks:

@@ -8,9 +8,13 @@ import io
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from posstats.errors import PosstatsError
+
+if TYPE_CHECKING:
+    from cryptography.x509 import Certificate
+    from pyhanko.sign import SimpleSigner
 
 EXTRA = "pip install 'posstats[sign]'"
 
@@ -84,7 +88,7 @@ def quiet_pyhanko() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def _appended(data: bytes, signer: Any, now: dt.datetime) -> bytes:
+def _appended(data: bytes, signer: "SimpleSigner", now: dt.datetime) -> bytes:
     from pyhanko.pdf_utils.incremental_writer import IncrementalPdfFileWriter
     from pyhanko.sign import PdfSignatureMetadata, PdfSigner
     from pyhanko.sign.fields import SigSeedSubFilter, enumerate_sig_fields
@@ -92,7 +96,7 @@ def _appended(data: bytes, signer: Any, now: dt.datetime) -> bytes:
     class Writer(IncrementalPdfFileWriter):
         """Adds no more than the signature: PDF/A-3 is PDF 1.7, and metadata stay as they are."""
 
-        def ensure_output_version(self, version: Any) -> None:
+        def ensure_output_version(self, version: object) -> None:
             """Leave the version alone."""
 
         def _update_meta(self) -> None:
@@ -117,7 +121,7 @@ def _appended(data: bytes, signer: Any, now: dt.datetime) -> bytes:
     return signed
 
 
-def _signer(key_file: bytes, passphrase: bytes, now: dt.datetime) -> Any:
+def _signer(key_file: bytes, passphrase: bytes, now: dt.datetime) -> "SimpleSigner":
     from cryptography.hazmat.primitives.serialization import pkcs12
     from pyhanko.sign import SimpleSigner
 
@@ -131,12 +135,13 @@ def _signer(key_file: bytes, passphrase: bytes, now: dt.datetime) -> Any:
         raise SigningError("the key file holds no private key with its certificate")
     _require_validity(certificate, now)
     try:
-        return SimpleSigner.load_pkcs12_data(key_file, [], passphrase or None)
+        signer: SimpleSigner = SimpleSigner.load_pkcs12_data(key_file, [], passphrase or None)
     except ValueError as error:
         raise SigningError(f"this kind of key cannot sign: {error}") from error
+    return signer
 
 
-def _require_validity(certificate: Any, now: dt.datetime) -> None:
+def _require_validity(certificate: "Certificate", now: dt.datetime) -> None:
     """Neither too early nor too late, and meant for signatures."""
     from cryptography import x509
 

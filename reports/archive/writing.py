@@ -15,6 +15,10 @@ from ..pages import pdf
 from ..pages.garbage import garbage_kept
 from .mending import mend
 
+# As `pdf.load` gives them: WeasyPrint is imported where it is needed.
+WeasyPrint = Any
+Fetcher = Any
+
 BASE = "posstats:/"  # relative addresses lead nowhere; without any, WeasyPrint fails on some
 RELATIONSHIPS = get_args(Relationship)
 
@@ -123,7 +127,9 @@ def _in_order(attachments: Sequence[Attachment]) -> list[Attachment]:
     return sorted(attachments, key=lambda file: file.name.encode())
 
 
-def _embedded(weasyprint: Any, fetcher: Any, file: Attachment, moment: dt.datetime) -> Any:
+def _embedded(
+    weasyprint: WeasyPrint, fetcher: Fetcher, file: Attachment, moment: dt.datetime
+) -> object:
     """As a ``data:`` URI, which states its type itself."""
     kind = MIME_TYPES.get(PurePosixPath(file.name).suffix.lower(), "application/octet-stream")
     return weasyprint.Attachment(

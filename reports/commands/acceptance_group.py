@@ -165,8 +165,11 @@ def profiles(name: str | None) -> None:
     help="Its first line opens the key.  [default: ask for the passphrase]",
 )
 @click.option("--out", type=FOLDER, required=True, metavar="SIGNED.pdf", help="File to write.")
+@language_option
 @clear_errors
-def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None:
+def sign(
+    file: Path, p12: Path, passphrase_file: Path | None, out: Path, language: Language
+) -> None:
     """Sign the acceptance document FILE.pdf, as a copy; the original is left alone.
 
     Needs the optional extra: pip install 'posstats[sign]'. No network is used. A document that is
@@ -177,10 +180,12 @@ def sign(file: Path, p12: Path, passphrase_file: Path | None, out: Path) -> None
       posstats sign acceptance.pdf --p12 surveyor.p12 --out acceptance-signed.pdf
     """
     from ..output import timestamp
+    from ..verification.words import words_of
     from .sign import sign_file
 
-    for line in sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock()):
-        click.echo(line)
+    document_id = sign_file(file, p12, out, passphrase_file, _ask_passphrase, now=timestamp.clock())
+    words = words_of(language)
+    click.echo(words.text("signing.done", document_id=document_id, file=str(out)))
 
 
 @click.command()

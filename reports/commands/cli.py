@@ -280,9 +280,16 @@ def calibrate(
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
 @seed_option
+@click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of the report; comparison.json stays English.",
+)
 @no_pdf_option("report")
 @clear_errors
-def paper(out: Path, seed: int, no_pdf: bool) -> None:
+def paper(out: Path, seed: int, language: Language, no_pdf: bool) -> None:
     """Reproduce the source paper's Tables 1-4 and Figures 1-3 on three simulated test areas.
 
     Needs no input. Writes paper.html, paper.pdf, comparison.json (every published number beside
@@ -295,16 +302,23 @@ def paper(out: Path, seed: int, no_pdf: bool) -> None:
     """
     from .paper import reproduce_paper
 
-    for line in reproduce_paper(out, seed, pdf=not no_pdf):
+    for line in reproduce_paper(out, seed, language=language, pdf=not no_pdf):
         click.echo(line)
 
 
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
 @seed_option
+@click.option(
+    "--language",
+    type=choice(Language),
+    default="en",
+    show_default=True,
+    help="Of the report; wucaps.json stays English.",
+)
 @no_pdf_option("report")
 @clear_errors
-def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
+def wucaps(out: Path, seed: int, language: Language, no_pdf: bool) -> None:
     """Reproduce the second source paper: POS errors removed in the bundle adjustment.
 
     Needs no input. Simulates a flat block at 1:2 500 and a mountainous one at 1:32 000, orients
@@ -317,7 +331,7 @@ def wucaps(out: Path, seed: int, no_pdf: bool) -> None:
     """
     from .wucaps import reproduce_wucaps
 
-    for line in reproduce_wucaps(out, seed, pdf=not no_pdf):
+    for line in reproduce_wucaps(out, seed, language=language, pdf=not no_pdf):
         click.echo(line)
 
 

@@ -3,7 +3,7 @@
 import datetime as dt
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 from posstats.errors import PosstatsError
@@ -23,8 +23,8 @@ def sign_file(
     ask: Callable[[], str],
     *,
     now: dt.datetime,
-) -> Iterator[str]:
-    """Sign `path` into `out`; yields the lines for the terminal.
+) -> str:
+    """Sign `path` into `out`.
 
     Parameters
     ----------
@@ -32,6 +32,11 @@ def sign_file(
         Asks for the passphrase; called last, when all else is in order.
     now
         The time that the signature states.
+
+    Returns
+    -------
+    str
+        The id of the document.
 
     Raises
     ------
@@ -46,7 +51,7 @@ def sign_file(
     passphrase = ask() if passphrase_file is None else _first_line(passphrase_file)
     signed = sign(data, key_file, passphrase.encode(), now=now)
     _write(out, signed)
-    yield f"signed: {document_id} in {out}"
+    return document_id
 
 
 def _document_id(path: Path, data: bytes) -> str:

@@ -1,1 +1,1 @@
-"""Reports on the two papers' experiments."""
+"""Reports on the reproduction of two papers, and what they share."""

@@ -29,7 +29,7 @@ from posstats.errors import PosstatsError
 
 # horizontal 5, 0, 5, vertical 1, 2, 5, means 1, 3, 2
 HAND = [[3.0, 4.0, -1.0], [0.0, 0.0, 2.0], [0.0, 5.0, 5.0]]
-BUNDLE = Bundle(sigma0=1.1, dof=40.0, p_value=0.3, image_rms_px=0.21, sigma_image_px=0.2,
+BUNDLE = Bundle(sigma0=1.1, dof=40, p_value=0.3, image_rms_px=0.21, sigma_image_px=0.2,
                 n_rays=400, n_rejected_rays=0, n_control_points=0)  # fmt: skip
 TEN_CM = Product(class_h_m=0.10, class_v_m=0.10)
 

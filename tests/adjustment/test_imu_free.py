@@ -264,8 +264,8 @@ def test_blocks_that_are_too_large_are_refused():
 
 
 def test_the_report_tells_of_the_bundle_and_of_its_check_points(analysis):
-    values = as_values(results(analysis))
-    page = html.render(block_document.build(values))
+    found = results(analysis)
+    page = html.render(block_document.build(found))
     for words in (
         "They are estimated by a bundle adjustment of the whole block",
         'id="table-bundle"',
@@ -273,14 +273,14 @@ def test_the_report_tells_of_the_bundle_and_of_its_check_points(analysis):
         "bundle block adjustment",
     ):
         assert words in page
-    assert values["bundle"]["n_control_points"] == 0
-    assert values["settings"]["errors"] == "bundle"
+    assert found.bundle.n_control_points == 0
+    assert found.settings.errors == "bundle"
 
 
 def test_the_report_without_a_bundle_has_no_such_section(block):
-    values = as_values(results(analyse(block, Settings(errors="adjusted"))))
-    assert values["bundle"] is None
-    assert 'id="table-bundle"' not in html.render(block_document.build(values))
+    found = results(analyse(block, Settings(errors="adjusted")))
+    assert found.bundle is None
+    assert 'id="table-bundle"' not in html.render(block_document.build(found))
 
 
 def test_the_command_takes_the_errors_from_the_bundle(block, tmp_path):

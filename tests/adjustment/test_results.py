@@ -9,7 +9,6 @@ from small_blocks import Layout, observed_block, true_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.results import adjustment_results
 from posstats.block.model import GroundPoints
-from posstats.contract.files import as_values
 from posstats.numerics.kernels.rotation import rotation_from_angles
 
 ERROR_RAD = np.array([0.03, -0.02, 0.05])
@@ -112,12 +111,12 @@ def test_an_adjusted_camera_is_the_stated_one_and_its_parameters_with_rows_downw
     truth = true_block(Layout(n_strips=3, n_images=4, n_points=120, sigma_image_px=0.1))
     block = observed_block(truth, np.random.default_rng(8))
     settings = AdjustmentSettings(control="none", camera=True, robust=False)
-    values = as_values(adjustment_results(adjust_block(block, settings)))
-    (camera,) = values["cameras"]
-    found = {each["name"]: each["value"] for each in values["parameters"]}
-    column, row = camera["stated_principal_point_px"]
+    results = adjustment_results(adjust_block(block, settings))
+    (camera,) = results.cameras
+    found = {each.name: each.value for each in results.parameters}
+    column, row = camera.stated_principal_point_px
     assert (column, row) == truth.cameras[0].principal_point_px
-    assert camera["principal_point_px"][0] - column == pytest.approx(found["camera_x0"])
-    assert camera["principal_point_px"][1] - row == pytest.approx(-found["camera_y0"])
-    change = camera["principal_distance_px"] - camera["stated_principal_distance_px"]
+    assert camera.principal_point_px[0] - column == pytest.approx(found["camera_x0"])
+    assert camera.principal_point_px[1] - row == pytest.approx(-found["camera_y0"])
+    change = camera.principal_distance_px - camera.stated_principal_distance_px
     assert change == pytest.approx(found["camera_c"])

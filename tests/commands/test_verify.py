@@ -29,6 +29,7 @@ from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.archive.file import LARGEST_BYTES
+from posstats.reports.block.wording import with_words
 from posstats.reports.commands import verify as verify_command
 from posstats.reports.commands.cli import cli
 from posstats.reports.output import timestamp
@@ -147,7 +148,7 @@ def analysed(tmp_path_factory) -> tuple[Path, Results]:
     )
     settings = Settings(rules="strict", frame="auto")
     analysis = analyse(read_block(folder), settings)
-    return folder, results(analysis, created="2026-01-02T03:04:05+00:00")
+    return folder, with_words(results(analysis, created="2026-01-02T03:04:05+00:00"))
 
 
 def test_recomputing_a_block_gives_its_results_again(analysed):

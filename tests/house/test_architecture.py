@@ -41,7 +41,8 @@ FLOORS = {
     "posstats.reports.adjustment": 15,
     "posstats.reports.acceptance": 15,
     "posstats.reports.verification": 15,
-    "posstats.reports.papers.drift": 15,
+    "posstats.reports.papers": 15,
+    "posstats.reports.papers.drift": 16,
     "posstats.reports.papers.wucaps": 16,
     "posstats.reports.commands": 17,
 }

@@ -26,7 +26,7 @@ def regressions(errors: Sequence[ImageAngleErrors], strips: list[str]) -> tuple[
 
 def _line(angle: str, scope: str, part: Sequence[ImageAngleErrors]) -> Regression:
     known = dict.fromkeys(Regression.__dataclass_fields__)
-    known |= {"angle": angle, "frame": "ground", "scope": scope, "n": len(part), "df_model": 1.0}
+    known |= {"angle": angle, "frame": "ground", "scope": scope, "n": len(part), "df_model": 1}
     known |= {"n_strips": len({row.strip for row in part}), "n_time_clusters": 1}
     known |= {"covariance_known": True}
     if len(part) < 3:

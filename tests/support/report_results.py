@@ -9,7 +9,7 @@ import numpy as np
 from report_check_points import check_point_residuals, check_points
 from report_regression import ANGLES, regressions
 
-from posstats.contract.notice import Notice
+from posstats.contract.notice import Notice, listing
 from posstats.contract.results import (
     AnalysedBlock,
     AnalysisSettings,
@@ -27,6 +27,8 @@ from posstats.contract.results import (
 )
 from posstats.contract.survey import ImagePlace, InputFile
 from posstats.reports.block.wording import with_words
+
+NOTICES = listing("models_with_few_points", ["3_07 - 3_08"], n_needed=6)
 
 PIXEL_MM = 0.012
 _HELD = {"angles": 22.7, "omega": 22.4, "phi": 0.31, "kappa": 0.47, "none": 0.28}
@@ -95,7 +97,7 @@ def area_results(n_strips: int = 5, per_strip: int = 60, seed: int = 1) -> Resul
             Observability(scope="block", images=()),
             *(Observability(scope=s, rotations=("about_base_axis",), images=()) for s in strips),
         ),
-        notices=(Notice(code="strips_of_one_image", values={"n": 1, "ids": ("3_07",)}),),
+        notices=NOTICES,
     )
     return with_words(made)
 

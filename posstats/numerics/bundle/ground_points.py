@@ -20,7 +20,7 @@ from posstats.numerics.bundle.point_normals import (
     solve_upper,
 )
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
-from posstats.numerics.kernels.compiled import inlined_kernel, kernel
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _INTERSECTION_STEPS = 3
 
@@ -74,7 +74,7 @@ def move_points(
             new_position_m[point, i] = ground.position_m[point, i] - side[i, 0]
 
 
-@inlined_kernel
+@inner_kernel
 def _square_sum(
     point: int,
     groups: PointGroups,

@@ -27,7 +27,7 @@ from posstats.numerics.bundle.point_normals import (
 )
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
 from posstats.numerics.kernels.algebra import add_products
-from posstats.numerics.kernels.compiled import inlined_kernel, kernel
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 _BATCH = 16  # points whose T are collected before they are multiplied
 
@@ -54,7 +54,7 @@ class Reduced(NamedTuple):
     common: Floats
 
 
-@inlined_kernel
+@inner_kernel
 def _add_direct(
     ray: Ray,
     weight: float,
@@ -96,7 +96,7 @@ def _add_direct(
     return float(v0 * v[0] + v1 * v[1])
 
 
-@inlined_kernel
+@inner_kernel
 def _add_turned(
     x: float, y: float, z: float, d: Floats, row: int, column: int, local: Floats
 ) -> None:
@@ -109,7 +109,7 @@ def _add_turned(
     local[row + 5, column] -= z
 
 
-@inlined_kernel
+@inner_kernel
 def _add_point(
     point: int,
     groups: PointGroups,
@@ -152,7 +152,7 @@ def _add_point(
     return determined, square_sum, control
 
 
-@inlined_kernel
+@inner_kernel
 def _scatter(local: Floats, members: Ints, pairs: Ints, n_common: int, out: Reduced) -> None:
     """Add a group's matrix (upper triangle) to the block's."""
     n, last, at = len(members), local.shape[0] - 1, 0

@@ -13,7 +13,7 @@ import numpy as np
 from posstats.arrays import Floats, Ints
 from posstats.numerics.bundle.point_groups import PointGroups
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, observe
-from posstats.numerics.kernels.compiled import inlined_kernel
+from posstats.numerics.kernels.compiled import inner_kernel
 
 # Smallest pivot, of a point's normal equations scaled to a unit diagonal, that determines it.
 _SINGULAR_PIVOT = 1e-12
@@ -65,7 +65,7 @@ class Network(NamedTuple):
     cameras: Cameras
 
 
-@inlined_kernel
+@inner_kernel
 def linearise(
     ray: int,
     point: int,
@@ -84,7 +84,7 @@ def linearise(
     return True
 
 
-@inlined_kernel
+@inner_kernel
 def add_to_point(
     ray: Ray,
     weight: float,
@@ -121,7 +121,7 @@ def add_to_point(
                 rows[i, common] += x * ray.by_camera[0, k] + y * ray.by_camera[1, k]
 
 
-@inlined_kernel
+@inner_kernel
 def add_control(point: int, ground: Ground, normals: Floats, side: Floats) -> float:
     """Add a point's control to N and n; its weighted square sum is returned."""
     control, square_sum = ground.control[point], 0.0
@@ -138,7 +138,7 @@ def add_control(point: int, ground: Ground, normals: Floats, side: Floats) -> fl
     return square_sum
 
 
-@inlined_kernel
+@inner_kernel
 def factorise_point(normals: Floats) -> bool:
     """Lower Cholesky factor (3, 3) in place; false if the point is not determined."""
     a, b, c = normals[0, 0], normals[1, 1], normals[2, 2]
@@ -159,7 +159,7 @@ def factorise_point(normals: Floats) -> bool:
     return True
 
 
-@inlined_kernel
+@inner_kernel
 def solve_lower(lower: Floats, rows: Floats) -> None:
     """L^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
@@ -169,7 +169,7 @@ def solve_lower(lower: Floats, rows: Floats) -> None:
         rows[2, j] = (rows[2, j] - lower[2, 0] * x - lower[2, 1] * y) / lower[2, 2]
 
 
-@inlined_kernel
+@inner_kernel
 def solve_upper(lower: Floats, rows: Floats) -> None:
     """L'^-1 rows (3, k), in place."""
     for j in range(rows.shape[1]):
@@ -179,7 +179,7 @@ def solve_upper(lower: Floats, rows: Floats) -> None:
         rows[0, j] = (rows[0, j] - lower[1, 0] * y - lower[2, 0] * z) / lower[0, 0]
 
 
-@inlined_kernel
+@inner_kernel
 def normals_of_point(
     point: int,
     groups: PointGroups,

@@ -26,7 +26,7 @@ from posstats.numerics.bundle.point_normals import (
     solve_upper,
 )
 from posstats.numerics.bundle.rays import Cameras, Images, Ray, new_ray
-from posstats.numerics.kernels.compiled import inlined_kernel, kernel
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 
 class Cofactors(NamedTuple):
@@ -62,7 +62,7 @@ class PointPrecision(NamedTuple):
     redundancy: Floats
 
 
-@inlined_kernel
+@inner_kernel
 def _gather(members: Ints, pairs: Ints, cofactors: Cofactors, local: Floats) -> None:
     """Write the covariance (6 n + k)^2 of a group's images and of the camera unknowns."""
     n, n_common, at = len(members), cofactors.corner.shape[0], 0
@@ -83,7 +83,7 @@ def _gather(members: Ints, pairs: Ints, cofactors: Cofactors, local: Floats) -> 
             local[6 * n + a, 6 * n + b] = cofactors.corner[a, b]
 
 
-@inlined_kernel
+@inner_kernel
 def _shift_covariance(
     d: Floats,
     at: int,
@@ -113,7 +113,7 @@ def _shift_covariance(
         out[i, 2] = d[0] * y - d[1] * x - turned[i, 5] + covariance[point, i, 2]
 
 
-@inlined_kernel
+@inner_kernel
 def _camera_variance(
     ray: Ray,
     axis: int,
@@ -143,7 +143,7 @@ def _camera_variance(
     return variance
 
 
-@inlined_kernel
+@inner_kernel
 def _propagate(lower: Floats, rows: Floats, local: Floats, shared: Floats, out: Floats) -> None:
     """Write U to `rows` (K before), U C to `shared` and cov X to `out`."""
     width = rows.shape[1]
@@ -166,7 +166,7 @@ def _propagate(lower: Floats, rows: Floats, local: Floats, shared: Floats, out: 
                 out[i, j] += shared[i, a] * rows[j, a]
 
 
-@inlined_kernel
+@inner_kernel
 def _point(
     point: int,
     groups: PointGroups,

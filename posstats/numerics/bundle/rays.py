@@ -19,7 +19,7 @@ import numpy as np
 
 from posstats.arrays import Floats, Ints
 from posstats.numerics.kernels.algebra import cross
-from posstats.numerics.kernels.compiled import inlined_kernel, kernel
+from posstats.numerics.kernels.compiled import inner_kernel, kernel
 
 CAMERA_PARAMETERS = (
     "camera_c", "camera_x0", "camera_y0",
@@ -95,7 +95,7 @@ class Ray(NamedTuple):
     by_camera: Floats
 
 
-@inlined_kernel
+@inner_kernel
 def new_ray(n_common: int) -> Ray:
     """Room for one ray; derivatives by the camera are wanted if there are common unknowns."""
     n_camera = 11 if n_common > 0 else 0
@@ -105,7 +105,7 @@ def new_ray(n_common: int) -> Ray:
 # Elements are addressed one by one below: a view of an array costs more than its numbers.
 
 
-@inlined_kernel
+@inner_kernel
 def observe(
     ground_m: Floats, point: int, image: int, images: Images, cameras: Cameras, out: Ray
 ) -> bool:
@@ -135,7 +135,7 @@ def observe(
     return True
 
 
-@inlined_kernel
+@inner_kernel
 def _deformed(
     a: float, b: float, camera: int, cameras: Cameras
 ) -> tuple[float, float, float, float, float, float]:
@@ -161,7 +161,7 @@ def _deformed(
     )  # fmt: skip
 
 
-@inlined_kernel
+@inner_kernel
 def _derive_camera(a: float, b: float, camera: int, cameras: Cameras, out: Ray) -> None:
     """Write the derivatives by `CAMERA_PARAMETERS`."""
     x, y, _, _, _, _ = _deformed(a, b, camera, cameras)
@@ -184,7 +184,7 @@ def _derive_camera(a: float, b: float, camera: int, cameras: Cameras, out: Ray) 
     _write(out, 10, c * (3.0 * a * a + b * b), 2.0 * c * a * b)
 
 
-@inlined_kernel
+@inner_kernel
 def _write(out: Ray, parameter: int, x: float, y: float) -> None:
     out.by_camera[0, parameter], out.by_camera[1, parameter] = x, y
 

@@ -40,16 +40,14 @@ def kernel(function: F) -> F:
 
 
 def inner_kernel(function: F) -> F:
-    """Compile a function for use inside kernels; it cannot be called from Python."""
-    return cast(F, numba.njit(**_INNER)(function))
+    """Compile a function for use inside kernels, into them; Python cannot call it.
 
-
-def inlined_kernel(function: F) -> F:
-    """As `inner_kernel`, put into its callers: half the time of kernels with many arrays.
-
-    Between functions that stay apart, every array handed on is counted as a reference.
+    Between functions that stay apart, every array handed on is counted as a reference: that is
+    half the time of kernels with many arrays. And a function that stays apart exists twice, on its
+    own and with its caller; the run that compiles takes the one, a run from the cache the other,
+    and their last digits differ.
     """
-    return cast(F, numba.njit(**_INNER, forceinline=True)(function))
+    return cast(F, numba.njit(**_INNER)(function))
 
 
 def summing_kernel(function: F) -> F:
@@ -64,6 +62,7 @@ _INNER: dict[str, Any] = {
     "error_model": "numpy",
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
+    "forceinline": True,
 }
 
 

@@ -2,15 +2,13 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
+from posstats.contract.comparison import Basis, Compared
 from posstats.contract.results import Results
 from posstats.papers.drift.areas import AREAS, area_scenario
 from posstats.papers.drift.findings import STRIP, known, only_row
 from posstats.papers.drift.published import Row, published
 from posstats.synthetic import Scenario
-
-Basis = Literal["given", "fitted", "predicted"]
 
 TABLE3_AREA = 1
 _METHODS = ("pos", "independent", "dependent")
@@ -29,39 +27,6 @@ _TABLE4_QUANTITIES = tuple(
     for side in ("horizontal", "vertical")
 )
 _ORIENTATIONS = {"pos": "pos", "omega_corrected": "omega"}
-
-
-@dataclass(frozen=True)
-class Compared:
-    """One printed number beside the reproduced one.
-
-    Attributes
-    ----------
-    table
-        Of the paper, 1 to 4.
-    strip, angle, orientation
-        Where the table has them, else None; Table 2 without a strip is the mean over all models of
-        the area.
-    quantity
-        Column of the table, with its unit.
-    ratio
-        Reproduced over published; None where either is missing, the published one is zero, or
-        the units are not known (slopes and intercepts of Table 3).
-    basis
-        ``given``: an input of the simulation; ``fitted``: its errors were chosen to give the mean
-        of these numbers; ``predicted``: nothing was chosen for it.
-    """
-
-    table: int
-    area: int
-    strip: str | None
-    angle: str | None
-    orientation: str | None
-    quantity: str
-    published: float
-    reproduced: float | None
-    ratio: float | None
-    basis: Basis
 
 
 def compare(results: Mapping[int, Results]) -> tuple[Compared, ...]:

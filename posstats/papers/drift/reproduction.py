@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from posstats.contract.comparison import Compared
 from posstats.contract.results import Results
 from posstats.papers.drift.areas import TrueCauses, area_scenario
-from posstats.papers.drift.comparison import Compared, compare
+from posstats.papers.drift.comparison import compare
 from posstats.papers.drift.findings import AreaFindings, find
 
 

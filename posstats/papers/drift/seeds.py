@@ -6,15 +6,16 @@ The file is written by ``benchmarks/paper_seeds.py``; a test repeats some of its
 import csv
 import math
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import get_type_hints
+
+from msgspec import convert
 
 from posstats.papers.drift.findings import AreaFindings
 
-_TYPES = get_type_hints(AreaFindings)
+_COLUMNS = ("seed", *(field.name for field in fields(AreaFindings)))
 
 
 @lru_cache(maxsize=1)
@@ -23,7 +24,7 @@ def repeated() -> dict[int, tuple[AreaFindings, ...]]:
     text = (files("posstats.papers.drift") / "seeds.csv").read_text(encoding="utf-8")
     found: dict[int, list[AreaFindings]] = {}
     for row in csv.DictReader(text.splitlines()):
-        each = AreaFindings(**{name: _TYPES[name](row[name]) for name in _TYPES})
+        each = convert(row, AreaFindings, strict=False)
         found.setdefault(each.area, []).append(each)
     return {area: tuple(each) for area, each in found.items()}
 
@@ -45,7 +46,7 @@ def share_interval(criterion: str, area: int) -> tuple[float, float]:
 def write(found: Iterable[tuple[int, AreaFindings]], path: Path) -> None:
     """Write pairs of seed and findings as the CSV file that `repeated` reads."""
     with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, ["seed", *_TYPES], lineterminator="\n")
+        writer = csv.DictWriter(stream, _COLUMNS, lineterminator="\n")
         writer.writeheader()
         for seed, each in found:
             values = asdict(each).items()

@@ -5,18 +5,18 @@ The file is written by ``benchmarks/wucaps_seeds.py``; a test repeats some of it
 
 import csv
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, get_type_hints
 
 import numpy as np
+from msgspec import convert
 
 from posstats.papers.wucaps.findings import SituationFindings
 from posstats.papers.wucaps.situations import Situation
 
-_TYPES = get_type_hints(SituationFindings)
+_COLUMNS = ("seed", *(field.name for field in fields(SituationFindings)))
 
 
 @lru_cache(maxsize=1)
@@ -25,10 +25,7 @@ def repeated() -> dict[Situation, tuple[SituationFindings, ...]]:
     text = (files("posstats.papers.wucaps") / "seeds.csv").read_text(encoding="utf-8")
     found: dict[Situation, list[SituationFindings]] = {}
     for row in csv.DictReader(text.splitlines()):
-        values: dict[str, Any] = {
-            name: float(row[name]) if kind is float else row[name] for name, kind in _TYPES.items()
-        }
-        each = SituationFindings(**values)
+        each = convert(row, SituationFindings, strict=False)
         found.setdefault(each.situation, []).append(each)
     return {situation: tuple(each) for situation, each in found.items()}
 
@@ -48,7 +45,7 @@ def pooled(name: str, situation: Situation) -> float:
 def write(found: Iterable[tuple[int, SituationFindings]], path: Path) -> None:
     """Write pairs of seed and findings as the CSV file that `repeated` reads."""
     with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, ["seed", *_TYPES], lineterminator="\n")
+        writer = csv.DictWriter(stream, _COLUMNS, lineterminator="\n")
         writer.writeheader()
         for seed, each in found:
             values = asdict(each).items()

@@ -1,97 +1,84 @@
-"""The three test areas, each simulated, analysed and written in a process of its own."""
+"""Topic: the test areas (Table 1), and what their simulation adds to the truth."""
 
-import multiprocessing
-import signal
-from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable
 
-from posstats.contract.results import Results
-from posstats.errors import PosstatsError
-from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
+from posstats.papers.drift.areas import area_scenario
+from posstats.papers.drift.reproduction import Reproduction
+from posstats.synthetic import Scenario
 
-from ...block.csv_files import write_tables
-from ...block.document import build, drawings
-from ...block.folder import write_analysis
-from ...block.report import write_figures
-from ...document.drawing import Drawing
-from ...output.progress import progress_bar
-from . import figures as paper_figures
+from ...document import format as fmt
+from ...document.content import Labelled, Paragraph, Part
+from ...document.table import Column, Table, text_column
+from .columns import compared
+from .report import Report
+from .words import Words
 
-_Numbers = tuple[Results, TrueCauses]
-
-_PROCESSES = 2  # the two large areas take nearly all the time
-
-
-@dataclass(frozen=True, eq=False)
-class AreaOutput:
-    """Results of an area, what its errors make alone, and its Figures 1, 2 and 3."""
-
-    results: Results
-    causes: TrueCauses
-    figures: tuple[Drawing, ...]
-
-
-def run_areas(folder: Path, seed: int, created: str) -> Mapping[int, AreaOutput]:
-    """Simulate and analyse the areas into ``area1``, ``area2`` and ``area3`` of a folder.
-
-    Raises
-    ------
-    PosstatsError
-        If an area fails, or its process is killed.
-    """
-    # Forked, so that the libraries are loaded once; before the progress bar starts its thread.
-    context = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(_PROCESSES, context, _obey_parent) as pool:
-        analysed = {
-            pool.submit(_analysed, area, seed, folder / f"area{area}", created): area
-            for area in AREAS
-        }
-        try:
-            with progress_bar("three test areas") as progress:
-                return _reported(pool, analysed, folder, progress)
-        except BrokenProcessPool as error:
-            raise PosstatsError(
-                "the process of a test area was killed: is there less than 2 GB of memory?"
-            ) from error
-        except BaseException:  # such as Ctrl-C: nobody waits for areas that are still running
-            for worker in multiprocessing.active_children():
-                worker.terminate()
-            raise
+_DECIMALS = {
+    "principal_distance_mm": 1,
+    "width_px": 0,
+    "height_px": 0,
+    "pixel_size_mm": 3,
+    "scale_denominator": 0,
+    "forward_overlap": 2,
+    "side_overlap": 2,
+    "n_strips": 0,
+    "n_images": 0,
+    "n_control_points": 0,
+    "n_tie_points": 0,
+}
+_CHOSEN: dict[str, Callable[[Scenario], float]] = {
+    "error.omega_constant": lambda s: 1e3 * s.errors.omega.constant_rad,
+    "error.omega_drift": lambda s: 1e7 * s.errors.omega.drift_rad_per_s,
+    "error.omega_noise": lambda s: 1e6 * s.errors.omega.noise_rad,
+    "error.phi_noise": lambda s: 1e6 * s.errors.phi.noise_rad,
+    "error.kappa_noise": lambda s: 1e6 * s.errors.kappa.noise_rad,
+    "error.position_noise": lambda s: 1e2 * s.errors.position.noise_m,
+    "error.tie_points": lambda s: s.errors.image_px,
+    "error.check_points": lambda s: s.check_points.image_px,
+    "error.survey": lambda s: s.check_points.ground_m,
+    "error.speed": lambda s: s.flight.speed_m_per_s,
+    "error.turn": lambda s: s.flight.turn_s,
+    "error.tilt": lambda s: 1e3 * s.flight.tilt_rad,
+    "error.relief": lambda s: s.terrain.relief_m,
+}
 
 
-def _reported(
-    pool: ProcessPoolExecutor,
-    analysed: Mapping[Future[_Numbers], int],
-    folder: Path,
-    progress: Callable[[str, float], None],
-) -> Mapping[int, AreaOutput]:
-    """Have each area's files written as soon as it is analysed, by whichever process is free."""
-    numbers: dict[int, _Numbers] = {}
-    drawn: dict[int, Future[tuple[Drawing, ...]]] = {}
-    for done, future in enumerate(as_completed(analysed), start=1):
-        area = analysed[future]
-        numbers[area] = future.result()
-        drawn[area] = pool.submit(_written, area, numbers[area][0], folder / f"area{area}")
-        progress(f"area {area} analysed", 0.7 * done / len(analysed))
-    return {area: AreaOutput(*numbers[area], drawn[area].result()) for area in AREAS}
+def topic(words: Words, report: Report) -> Part:
+    """What was photographed, and how it is simulated."""
+    return Part(
+        "areas",
+        words.text("areas.title"),
+        (
+            Paragraph(words.text("areas.text")),
+            Paragraph(words.text("areas.device")),
+            Labelled("1", table(words, report.run)),
+            Labelled("C", errors(words, report.run)),
+        ),
+    )
 
 
-def _analysed(area: int, seed: int, folder: Path, created: str) -> _Numbers:
-    analysis = run_area(area, seed)
-    causes = true_causes(analysis.block, analysis.models)
-    return write_analysis(analysis, folder, created=created), causes
+def table(words: Words, run: Reproduction) -> Table:
+    """Table 1: the three areas as printed and as simulated."""
+    names = [words.of("quantity", quantity) for quantity in _DECIMALS]
+    columns = [text_column(words.text("quantity.column"), names)]
+    for area in run.results:
+        found = {each.quantity: each for each in compared(run, 1, area=area)}
+        shown = [(found[quantity], decimals) for quantity, decimals in _DECIMALS.items()]
+        group = words.area_title(area)
+        published = tuple(fmt.fixed(each.published, decimals) for each, decimals in shown)
+        simulated = tuple(fmt.fixed(each.reproduced, decimals) for each, decimals in shown)
+        columns.append(Column(words.text("source.published"), published, group=group))
+        columns.append(Column(words.text("source.simulated"), simulated, group=group))
+    return Table("areas", words.text("areas.caption"), tuple(columns))
 
 
-def _written(area: int, values: Results, folder: Path) -> tuple[Drawing, ...]:
-    write_tables(values, folder / "tables")
-    write_figures(drawings(build(values)), folder / "figures")
-    return paper_figures.draw_area(area, values)
-
-
-def _obey_parent() -> None:
-    """Leave Ctrl-C to the parent, and end at once when it says so."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+def errors(words: Words, run: Reproduction) -> Table:
+    """What the simulation adds to the truth: the parameters that were fitted."""
+    names = [words.text(name) for name in _CHOSEN]
+    columns = [text_column(words.text("quantity.column"), names)]
+    for area in run.results:
+        scenario = area_scenario(area)
+        cells = tuple(fmt.as_chosen(value(scenario)) for value in _CHOSEN.values())
+        columns.append(Column(words.area_title(area), cells))
+    notes = (words.text("errors.note"),)
+    return Table("simulated_errors", words.text("errors.caption"), tuple(columns), notes)

@@ -4,38 +4,36 @@ from posstats.contract.choices import ControlSubset
 from posstats.papers.wucaps.experiment import Method
 from posstats.papers.wucaps.situations import Situation
 
-from ...document.format import NARROW_SPACE
+from ...document.catalogue import catalogue
+from .. import words as papers
 
-TERRAIN: dict[Situation, str] = {"flat": "flat", "mountain": "mountainous"}
-SITUATIONS: dict[Situation, str] = {
-    "flat": "flat, 1:2500",
-    "mountain": f"mountainous, 1:32{NARROW_SPACE}000",
-}
-BLOCKS: dict[Situation, str] = {
-    "flat": "the flat block at 1:2500",
-    "mountain": f"the mountainous block at 1:32{NARROW_SPACE}000",
-}
-METHODS: dict[Method, str] = {
-    "pos": "POS as recorded",
-    "calibrated": "POS, calibrated",
-    "regression": "POS, regression on time",
-    "strip_lines": "POS, line of every strip",
-    "bundle": "bundle",
-    "bundle_calibrated": "bundle, POS calibrated",
-    "weighted": "bundle, drifts weighted",
-    "weighted_calibrated": "bundle, drifts weighted, POS calibrated",
-    "free": "bundle, drifts free",
-    "reference": "bundle, no systematic errors",
-}
-CONTROL: dict[ControlSubset, str] = {
-    "none": "none",
-    "centre": "one, centre",
-    "corners": "four, corners",
-    "all": "all",
-}
-METHOD_NOTES = (
-    "Calibrated: boresight of another flight taken off. Regression on time: the first paper's, by "
-    "its rules. Line of every strip: OLS line of every angle and strip taken off, whatever the "
-    "rules say. Bundle: no unknowns of the POS. Drifts: boresight, and shifts and drifts of GNSS "
-    "and IMU by strip, as weighted or as free unknowns.",
-)
+DOMAINS = ("document", "papers", "wucaps")
+
+
+class Words(papers.Words):
+    """The catalogue of the report."""
+
+    def terrain(self, situation: Situation) -> str:
+        """The terrain of a situation in the middle of a sentence."""
+        return self.of("terrain", situation)
+
+    def situation(self, situation: Situation) -> str:
+        """A situation in the middle of a sentence: its terrain and scale."""
+        return self.of("situation", situation)
+
+    def situation_title(self, situation: Situation) -> str:
+        """The same at the beginning of a sentence."""
+        return self.of("situation_title", situation)
+
+    def method(self, method: Method) -> str:
+        """A way of orienting."""
+        return self.of("method", method)
+
+    def control(self, control: ControlSubset) -> str:
+        """Which control points take part."""
+        return self.of("control", control)
+
+
+def words_in(language: str) -> Words:
+    """The words in a language."""
+    return Words(catalogue(language, *DOMAINS))

@@ -3,11 +3,16 @@
 import os
 import subprocess
 import sys
+from importlib import import_module
+from pkgutil import walk_packages
 
 import pytest
+from numba.extending import is_jitted
+
+import posstats
 
 INNER = """
-from posstats.compiled import inner_kernel
+from posstats.numerics.kernels.compiled import inner_kernel
 
 @inner_kernel
 def innermost(x):
@@ -15,7 +20,7 @@ def innermost(x):
 """
 MIDDLE = """
 from innermost import innermost
-from posstats.compiled import inner_kernel
+from posstats.numerics.kernels.compiled import inner_kernel
 
 @inner_kernel
 def middle(x):
@@ -23,7 +28,7 @@ def middle(x):
 """
 OUTER = """
 from middle import middle
-from posstats.compiled import kernel
+from posstats.numerics.kernels.compiled import kernel
 
 @kernel
 def outer(x):
@@ -71,3 +76,20 @@ def test_a_kernel_is_compiled_again_when_an_inner_kernel_of_another_file_changes
 def test_without_a_cache_folder_kernels_still_work(run, tmp_path):
     (tmp_path / "file").write_text("")
     assert run(2.0, cache="file/below")[0][0] == "21.0"
+
+
+def test_no_inner_function_stays_apart_from_its_kernel():
+    """Otherwise the run that compiles and a run from the cache differ in the last digits."""
+    modules = [
+        import_module(found.name)
+        for found in walk_packages(posstats.__path__, "posstats.")
+        if found.name.startswith(("posstats.numerics", "posstats.geometry"))
+    ]
+    inner = {
+        value
+        for module in modules
+        for value in vars(module).values()
+        if is_jitted(value) and value.targetoptions.get("no_cpython_wrapper")
+    }
+    assert len(inner) > 10
+    assert all(function.targetoptions.get("forceinline") for function in inner)

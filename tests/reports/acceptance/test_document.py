@@ -18,6 +18,8 @@ from posstats.reports.acceptance import words as acceptance_words
 from posstats.reports.acceptance.document import build
 from posstats.reports.acceptance.page import render_document, unshown
 from posstats.reports.acceptance.units import lengths
+from posstats.reports.document.catalogue import catalogue
+from posstats.reports.document.words import Words
 from posstats.reports.pages import pdf
 from posstats.reports.typefaces import cjk
 
@@ -216,10 +218,20 @@ def test_the_chinese_page_is_chinese_throughout(pages):
         assert words in text
     ours = re.sub(r"Edition.*?\n|ASPRS[^\n]*", "", text)
     for word in ("Requirement", "limit", "Table", "Figure", "strip", "Accepted", "check point"):
-        for given in (*CASES["rejected"].warnings, *CASES["rejected"].profile.notes):
+        for given in CASES["rejected"].profile.notes:
             ours = ours.replace(given, "")
         assert word not in ours
     assert '<html lang="zh-CN">' in pages["zh"]
+
+
+def test_warnings_and_open_rotations_are_told_in_the_language_of_the_document(pages):
+    (notice,) = RESULTS.notices
+    for page, language in (("rejected", "en"), ("zh", "zh")):
+        words = Words(catalogue(language, "document", "notices"))
+        text = words_on(pages[page])
+        assert words.notice(notice) in text
+        assert words.text("rotation.about_base_axis") in text
+    assert RESULTS.warnings[0] not in words_on(pages["zh"])
 
 
 def test_chinese_is_embedded_bold_too_and_in_english_documents(pages):

@@ -43,11 +43,11 @@ def test_what_weasyprint_leaves_out_would_be_seen(inputs, monkeypatch):
     monkeypatch.setattr(archive_pdf, "mend", lambda document, pdf: None)
     found = set(problems(document(results_of(inputs), render=render_archive)))
     assert {
-        "cell without scope",
-        "image with interpolation",
-        "ones, each once",
-        "in their tree",
-        "of the structure",
+        "a header cell without scope",
+        "an image with interpolation",
+        "associated files are not the embedded ones, each once",
+        "ids of elements are not in their tree",
+        "marked content outside of the structure",
     } <= found
 
 

@@ -57,7 +57,7 @@ def test_every_question_standing_and_verdict_has_words():
         assert set(family(words, "verdict_said")) == verdicts
 
 
-@pytest.mark.parametrize("name", ["said", "question", "answer", "signature"])
+@pytest.mark.parametrize("name", ["said", "question", "answer", "signature", "signing"])
 def test_both_languages_have_the_same_messages_with_the_same_places(name):
     chinese = family(CHINESE, name)
     for code, forms in family(ENGLISH, name).items():

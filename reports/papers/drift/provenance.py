@@ -1,0 +1,30 @@
+"""Topic: scenarios, seeds, settings and software of the first paper's reproduction."""
+
+from posstats.papers.drift.areas import area_seed
+from posstats.papers.drift.comparison import TABLE3_AREA
+
+from ...document.content import Part
+from .. import provenance
+from .report import Report
+from .words import Words
+
+_SETTINGS = ("rules", "scope", "errors", "frame", "robust")
+
+
+def topic(words: Words, report: Report) -> Part:
+    """How to make the numbers again."""
+    run = report.run
+    results = run.results[TABLE3_AREA]
+    text = words.text("provenance.text", seed=str(run.seed))
+    seeds = [_seed(words, area, area_seed(run.seed, area)) for area in run.results]
+    settings = [
+        (words.of("setting", name), str(getattr(results.settings, name))) for name in _SETTINGS
+    ]
+    return provenance.topic(words, text, [*seeds, *settings], results.versions.items(), "HI")
+
+
+def _seed(words: Words, area: int, seed: int) -> tuple[str, str]:
+    return (
+        words.text("provenance.seed", area=str(area)),
+        words.text("provenance.seeds", area=str(area), seed=str(seed)),
+    )
