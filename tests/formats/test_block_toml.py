@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from finding_parts import assert_finding, parts
 
 from posstats.formats.block_toml import parse_settings
 
@@ -63,106 +64,214 @@ def test_the_whole_file_is_understood() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "expected"),
+    ("old", "new", "where", "found", "expected"),
     [
         (
             "angle_unit",
             "angel_unit",
-            "block.toml:7, block.angel_unit: found an unknown key, expected angle_unit?",
+            "block.toml:7, block.angel_unit",
+            "an unknown key",
+            "angle_unit?",
         ),
         (
             "[accuracy]",
             "[acuracy]",
-            "block.toml:25, acuracy: found an unknown key, expected accuracy?",
+            "block.toml:25, acuracy",
+            "an unknown key",
+            "accuracy?",
         ),
-        ("k2 = 0.0", "k3 = 0.0", "block.toml:18, camera.distortion.k3: found an unknown key"),
+        ("k2 = 0.0", "k3 = 0.0", "block.toml:18, camera.distortion.k3", "an unknown key", "k2?"),
         (
             "width_px",
             "width",
-            "block.toml:13, camera.width: found an unknown key, expected width_px?",
+            "block.toml:13, camera.width",
+            "an unknown key",
+            "width_px?",
         ),
-        ("lever_arm_m", "lever_arm", "block.toml:21, pos.lever_arm: found an unknown key"),
+        (
+            "lever_arm_m",
+            "lever_arm",
+            "block.toml:21, pos.lever_arm",
+            "an unknown key",
+            "lever_arm_m?",
+        ),
         (
             '"deg"',
             '"degree"',
-            "block.toml:7, block.angle_unit: found 'degree', expected deg or rad or gon",
+            "block.toml:7, block.angle_unit",
+            "'degree'",
+            "deg or rad",
         ),
-        ('"px"', '"pixels"', "block.toml:8, block.image_coordinates: found 'pixels'"),
-        ('"omega-phi-kappa"', '"opk"', "block.toml:6, block.angles: found 'opk'"),
-        ('"ellipsoidal"', '"normal"', "block.toml:5, block.heights: found 'normal'"),
-        ("simulated = false", 'simulated = "no"', "block.toml:9, block.simulated: found 'no'"),
+        ('"px"', '"pixels"', "block.toml:8, block.image_coordinates", "'pixels'", "px or mm;"),
+        (
+            '"omega-phi-kappa"',
+            '"opk"',
+            "block.toml:6, block.angles",
+            "'opk'",
+            "omega-phi-kappa or phi-omega-kappa",
+        ),
+        (
+            '"ellipsoidal"',
+            '"normal"',
+            "block.toml:5, block.heights",
+            "'normal'",
+            "ellipsoidal or orthometric",
+        ),
+        (
+            "simulated = false",
+            'simulated = "no"',
+            "block.toml:9, block.simulated",
+            "'no'",
+            "true or false",
+        ),
         (
             '"EPSG:2154"',
             '"EPSG:4326"',
-            "block.toml:3, block.crs: EPSG:4326 (WGS 84) is no map grid",
+            "block.toml:3, block.crs",
+            "EPSG:4326 (WGS 84) is",
+            "",
         ),
-        ('"EPSG:2154"', '"EPSG:0"', "block.toml:3, block.crs: PROJ does not know the crs 'EPSG:0'"),
-        ('crs = "EPSG:2154"\n', "", "block.toml:3, block.frame: found tangent without crs"),
-        ("width_px = 13824\n", "", "block.toml:11, camera.width_px: found nothing"),
+        ('"EPSG:2154"', '"EPSG:0"', "block.toml:3, block.crs", "PROJ does not", ""),
+        (
+            'crs = "EPSG:2154"\n',
+            "",
+            "block.toml:3, block.frame",
+            "tangent without crs",
+            "a crs beside",
+        ),
+        (
+            "width_px = 13824\n",
+            "",
+            "block.toml:11, camera.width_px",
+            "nothing",
+            "a positive number",
+        ),
         (
             "width_px = 13824",
             "width_px = true",
-            "camera.width_px: found True, expected a positive number",
+            "block.toml:13, camera.width_px",
+            "True",
+            "a positive number",
         ),
         (
             "width_px = 13824",
             "width_px = -1",
-            "camera.width_px: found -1, expected a positive number",
+            "block.toml:13, camera.width_px",
+            "-1",
+            "a positive number",
         ),
         (
             "height_px = 7680",
             "height_px = nan",
-            "camera.height_px: found nan, expected a positive number",
+            "block.toml:14, camera.height_px",
+            "nan",
+            "a positive number",
         ),
-        ("principal_distance_mm = 120.0\n", "", "camera.principal_distance_mm: found nothing"),
-        ("pixel_size_mm = 0.012\n", "", "camera.pixel_size_mm: found nothing"),
+        (
+            "principal_distance_mm = 120.0\n",
+            "",
+            "block.toml:11, camera.principal_distance_mm",
+            "nothing",
+            "a positive number",
+        ),
+        (
+            "pixel_size_mm = 0.012\n",
+            "",
+            "block.toml:11, camera.pixel_size_mm",
+            "nothing",
+            "it with principal_distance_mm",
+        ),
         (
             "pixel_size_mm = 0.012\n",
             "principal_distance_px = 1e4\npixel_size_mm = 0.012\n",
-            "camera.principal_distance_mm: found also principal_distance_px",
+            "block.toml:17, camera.principal_distance_mm",
+            "also principal_distance_px",
+            "one",
         ),
         (
             "[6912.0, 3840.0]",
             "[6912.0]",
-            "camera.principal_point_px: found [6912.0], expected 2 finite",
+            "block.toml:17, camera.principal_point_px",
+            "[6912.0]",
+            "2 finite numbers in",
         ),
-        ('"radial"', '"fisheye"', "camera.distortion.model: found 'fisheye'"),
-        ('{ model = "radial", k1 = 0.1, k2 = 0.0 }', "0.1", "camera.distortion: found 0.1"),
-        ("k1 = 0.1", "k1 = inf", "camera.distortion.k1: found inf, expected a finite number"),
-        ("k1 = 0.1", f"k1 = {10**400}", "camera.distortion.k1: found 1000"),
+        (
+            '"radial"',
+            '"fisheye"',
+            "block.toml:18, camera.distortion.model",
+            "'fisheye'",
+            "none or radial",
+        ),
+        (
+            '{ model = "radial", k1 = 0.1, k2 = 0.0 }',
+            "0.1",
+            "block.toml:18, camera.distortion",
+            "0.1",
+            "a table of",
+        ),
+        ("k1 = 0.1", "k1 = inf", "block.toml:18, camera.distortion.k1", "inf", "a finite number"),
+        (
+            "k1 = 0.1",
+            f"k1 = {10**400}",
+            "block.toml:18, camera.distortion.k1",
+            "1000",
+            "a finite number",
+        ),
         (
             "k1 = 0.1",
             "k1 = 1e10",
-            "camera.distortion.k1: found 10000000000.0, expected a finite number of at most 1e+09",
+            "block.toml:18, camera.distortion.k1",
+            "10000000000.0",
+            "a finite number",
         ),
         (
             "position_m = 0.05",
             "position_m = 1e-10",
-            "accuracy.position_m: found 1e-10, expected a positive number from 1e-09",
+            "block.toml:26, accuracy.position_m",
+            "1e-10",
+            "a positive number",
         ),
         (
             "position_m = 0.05",
             "position_m = 1e200",
-            "accuracy.position_m: found 1e+200, expected a positive number from 1e-09 to 1e+09",
+            "block.toml:26, accuracy.position_m",
+            "1e+200",
+            "a positive number",
         ),
         (
             "mounting_deg = 0",
             "mounting_deg = 90",
-            "pos.mounting_deg: found it with omega-phi-kappa",
+            "block.toml:23, pos.mounting_deg",
+            "it with omega-phi-kappa",
+            "roll-pitch-heading",
         ),
         (
             "position_m = 0.05",
             "position_m = 0",
-            "accuracy.position_m: found 0, expected a positive",
+            "block.toml:26, accuracy.position_m",
+            "0",
+            "a positive number",
         ),
-        ('name = "area1"', "name = 1", "block.name: found 1, expected text in quotes"),
-        ("simulated", 'geoid = "g.tif"\nsimulated', "block.geoid: found a geoid grid"),
-        ("[pos]", "pos = 3\n[acc]", "pos"),
+        ('name = "area1"', "name = 1", "block.toml:2, block.name", "1", "text in quotes"),
+        (
+            "simulated",
+            'geoid = "g.tif"\nsimulated',
+            "block.toml:9, block.geoid",
+            "a geoid grid",
+            "it with crs",
+        ),
+        (
+            "[pos]",
+            "pos = 3\n[acc]",
+            "block.toml:20, camera.pos",
+            "an unknown key",
+            "one of width_px,",
+        ),
     ],
 )
-def test_wrong_keys_are_named_with_their_line(old, new, expected) -> None:
-    found = findings((old, new))
-    assert any(expected in text for text in found), found
+def test_wrong_keys_are_named_with_their_line(old, new, where, found, expected) -> None:
+    (finding, *_) = [text for text in findings((old, new)) if parts(text)[0] == where]
+    assert_finding(finding, where, found, expected)
 
 
 @pytest.mark.parametrize("key", ["angles", "angle_unit", "image_coordinates"])
@@ -184,9 +293,10 @@ def test_navigation_angles_need_a_crs() -> None:
     found = findings(
         ('crs = "EPSG:2154"\nframe = "tangent"\n', ""), ("omega-phi-kappa", "roll-pitch-heading")
     )
-    assert found == [
-        "block.toml:4, block.angles: found roll-pitch-heading without crs, expected a crs beside it"
-    ]
+    (finding,) = found
+    assert_finding(
+        finding, "block.toml:4, block.angles", "roll-pitch-heading without crs", "a crs beside"
+    )
 
 
 def test_millimetres_need_the_pixel_size() -> None:
@@ -203,13 +313,14 @@ def test_several_cameras_have_different_ids() -> None:
     text = GOOD.replace(GOOD[GOOD.index("[camera]") : GOOD.index("[pos]")], camera + camera)
     found: list[str] = []
     assert parse_settings(text.encode(), "folder", found) is None
-    assert "block.toml:11, camera.id: found a camera without id" in found[0]
-    assert "block.toml:20, camera.id: found a camera without id" in found[1]
+    assert_finding(found[0], "block.toml:11, camera.id", "a camera without")
+    assert_finding(found[1], "block.toml:20, camera.id", "a camera without")
     found.clear()
     text = text.replace('name = "DMC"', 'name = "DMC"\nid = "a"')
     assert parse_settings(text.encode(), "folder", found) is None
-    assert found == ["block.toml:23, camera.id: found camera 'a' twice, expected once"]
+    (finding,) = found
+    assert_finding(finding, "block.toml:23, camera.id", "camera 'a' twice", "once")
 
 
 def test_toml_that_is_none_is_refused() -> None:
-    assert findings(('"area1"', '"area1'))[0].startswith("block.toml: found no valid TOML")
+    assert_finding(findings(('"area1"', '"area1'))[0], "block.toml", "no valid TOML")
