@@ -279,6 +279,7 @@ from posstats.reports.commands.cli import main
 from posstats.reports.papers.drift import running
 
 told = int(sys.argv.pop(1))
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
 
 def wait(*_):
     os.write(told, b".")
