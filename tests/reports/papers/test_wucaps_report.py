@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from catalogues import OF
 from click.testing import CliRunner
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
@@ -43,7 +44,7 @@ def folder(tmp_path_factory, runs) -> Path:
 
     out = tmp_path_factory.mktemp("wucaps") / "out"
     told = run_wucaps(out, run_one)
-    assert "5. No calibration field is needed: holds" in told
+    assert f"5. {OF['en', 'wucaps'].text('title.calibration_is_dispensable')}: holds" in told
     return out
 
 
