@@ -1,7 +1,7 @@
 """Repeat the second paper's experiment with many seeds and store what each situation showed.
 
-Writes posstats/papers/wucaps/seeds.csv, from which `posstats wucaps` states how often its findings come
-out and whether covariances predict accuracies. To be run again whenever a scenario or the
+Writes posstats/papers/wucaps/seeds.csv, from which `posstats wucaps` states how often its findings
+come out and whether covariances predict accuracies. To be run again whenever a scenario or the
 adjustment changes its numbers:
 
     python benchmarks/wucaps_seeds.py --seeds 100 --processes 2

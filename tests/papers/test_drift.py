@@ -35,7 +35,7 @@ def test_the_published_numbers_are_those_typed_by_others(table):
     ours, theirs = published(table), typed_elsewhere(table)
     assert len(ours) == len(theirs)
     for mine, other in zip(ours, theirs, strict=True):
-        named = {key.removesuffix("_mm") if table == 2 else key: v for key, v in mine.items()}
+        named = {key.removesuffix("_mm") if table == 2 else key: v for key, v in vars(mine).items()}
         assert named.keys() == other.keys()
         for key, text in other.items():
             value = named[key]
@@ -44,8 +44,8 @@ def test_the_published_numbers_are_those_typed_by_others(table):
 
 def test_rows_are_chosen_by_their_values():
     (row,) = published(4, area=2, orientation="pos")
-    assert row["rmse_vertical_m"] == 3.010
-    assert [row["strip"] for row in published(2, area=3)] == ["1", "2", "3", "4"]
+    assert row.rmse_vertical_m == 3.010
+    assert [row.strip for row in published(2, area=3)] == ["1", "2", "3", "4"]
 
 
 def test_table_3_can_only_be_one_strip_of_sixty_images():
@@ -54,12 +54,12 @@ def test_table_3_can_only_be_one_strip_of_sixty_images():
 
 def test_table_3_recomputed_agrees_with_another_librarys_f_distribution():
     for row, printed in zip(recomputed(58), published(3), strict=True):
-        assert row.p_value == pytest.approx(stats.f.sf(printed["f_statistic"], 1, 58), rel=1e-10)
+        assert row.p_value == pytest.approx(stats.f.sf(printed.f_statistic, 1, 58), rel=1e-10)
     assert [round(row.zero_crossing_t) for row in recomputed(58)] == [57020, 58761, 58419]
 
 
 def test_area_3_of_table_4_cannot_have_had_its_mean_removed_from_the_heights():
-    found = [(row["area"], row["orientation"]) for row, _ in impossible_vertical_rmse()]
+    found = [(row.area, row.orientation) for row, _ in impossible_vertical_rmse()]
     assert found == [(3, "pos"), (3, "omega_corrected")]
 
 
@@ -91,9 +91,9 @@ def test_data_with_the_implied_scatter_regress_to_the_printed_f(angle):
     noise = np.random.default_rng(5).normal(size=60)
     noise -= design @ np.linalg.lstsq(design, noise)[0]
     scatter = implied_scatter(angle, float(time.std()))
-    line = stats.linregress(time, row["slope_per_t"] * time + scatter * noise / noise.std())
+    line = stats.linregress(time, row.slope_per_t * time + scatter * noise / noise.std())
     f_statistic = 58.0 * line.rvalue**2 / (1.0 - line.rvalue**2)
-    assert f_statistic == pytest.approx(row["f_statistic"], rel=1e-9)
+    assert f_statistic == pytest.approx(row.f_statistic, rel=1e-9)
 
 
 def test_position_errors_alone_are_not_taken_for_angle_errors():

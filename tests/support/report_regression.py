@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from posstats.contract.notice import Notice
 from posstats.contract.results import (
     ImageAngleErrors,
     Regression,
@@ -29,7 +30,8 @@ def _line(angle: str, scope: str, part: Sequence[ImageAngleErrors]) -> Regressio
     known |= {"n_strips": len({row.strip for row in part}), "n_time_clusters": 1}
     known |= {"covariance_known": True}
     if len(part) < 3:
-        return Regression(**known | {"reason": "fewer than 3 images with a determined error"})
+        few = {"n": len(part), "n_needed": 3}
+        return Regression(**known | {"notice": Notice(code="too_few_images", values=few)})
     return Regression(**known | _fit(angle, scope, part) | {"n_time_clusters": known["n_strips"]})
 
 

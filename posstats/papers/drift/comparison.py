@@ -7,7 +7,7 @@ from posstats.contract.comparison import Basis, Compared
 from posstats.contract.results import Results
 from posstats.papers.drift.areas import AREAS, area_scenario
 from posstats.papers.drift.findings import STRIP, known, only_row
-from posstats.papers.drift.published import Row, published
+from posstats.papers.drift.published import published
 from posstats.synthetic import Scenario
 
 TABLE3_AREA = 1
@@ -50,9 +50,9 @@ def _table1(area: int, results: Results) -> Iterator[Compared]:
     place = _Place(1, area)
     flown = _as_flown(area_scenario(area), results)
     for quantity, value in flown.items():
-        yield place.compared(quantity, row, value, "given")
+        yield place.compared(quantity, getattr(row, quantity), value, "given")
     n_tie_points = results.block.n_tie_points
-    yield place.compared("n_tie_points", row, n_tie_points, "fitted")
+    yield place.compared("n_tie_points", row.n_tie_points, n_tie_points, "fitted")
 
 
 def _as_flown(scenario: Scenario, results: Results) -> dict[str, float | None]:
@@ -74,19 +74,22 @@ def _as_flown(scenario: Scenario, results: Results) -> dict[str, float | None]:
 def _table2(area: int, results: Results) -> Iterator[Compared]:
     means: dict[str, list[tuple[int, float, float]]] = {}
     for row in published(2, area=area):
-        place = _Place(2, area, strip=row["strip"])
+        place = _Place(2, area, strip=row.strip)
         for method in _METHODS:
-            strip = only_row(results.parallax, strip=row["strip"], method=method)
+            strip = only_row(results.parallax, strip=row.strip, method=method)
             for statistic in _STATISTICS:
                 basis: Basis = "fitted" if statistic == "mean" else "predicted"
                 quantity = f"{method}_{statistic}_mm"
-                yield place.compared(quantity, row, getattr(strip, f"{statistic}_mm"), basis)
+                reproduced = getattr(strip, f"{statistic}_mm")
+                yield place.compared(quantity, getattr(row, quantity), reproduced, basis)
             mean = f"{method}_mean_mm"
-            means.setdefault(mean, []).append((strip.n_models, row[mean], known(strip.mean_mm)))
+            means.setdefault(mean, []).append(
+                (strip.n_models, getattr(row, mean), known(strip.mean_mm))
+            )
     for mean, strips in means.items():
-        n_models, printed, reproduced = zip(*strips, strict=True)
-        row = {mean: _weighted(printed, n_models)}
-        yield _Place(2, area).compared(mean, row, _weighted(reproduced, n_models), "fitted")
+        n_models, *both = zip(*strips, strict=True)
+        printed, found = (_weighted(values, n_models) for values in both)
+        yield _Place(2, area).compared(mean, printed, found, "fitted")
 
 
 def _weighted(values: Sequence[float], n_models: Sequence[int]) -> float:
@@ -99,25 +102,26 @@ def _table3(area: int, results: Results) -> Iterator[Compared]:
     if area != TABLE3_AREA:
         return
     for row in published(3):
-        place = _Place(3, area, strip=STRIP, angle=row["angle"])
-        line = only_row(results.regression, angle=row["angle"], scope=STRIP, frame="ground")
+        place = _Place(3, area, strip=STRIP, angle=row.angle)
+        line = only_row(results.regression, angle=row.angle, scope=STRIP, frame="ground")
         for quantity, key in _REGRESSION_KEYS.items():
-            published_drift = (row["angle"], quantity) == ("omega", "slope_per_t")
+            published_drift = (row.angle, quantity) == ("omega", "slope_per_t")
             basis: Basis = "given" if published_drift else "predicted"
-            yield place.compared(quantity, row, getattr(line, key), basis)
+            yield place.compared(quantity, getattr(row, quantity), getattr(line, key), basis)
 
 
 def _table4(area: int, results: Results) -> Iterator[Compared]:
     for row in published(4, area=area):
-        place = _Place(4, area, orientation=row["orientation"])
+        place = _Place(4, area, orientation=row.orientation)
         points = only_row(
             results.check_points,
-            orientation=_ORIENTATIONS[row["orientation"]],
+            orientation=_ORIENTATIONS[row.orientation],
             translation_removed=True,
         )
-        yield place.compared("n_check_points", row, points.n, "given")
+        yield place.compared("n_check_points", row.n_check_points, points.n, "given")
         for quantity in _TABLE4_QUANTITIES:
-            yield place.compared(quantity, row, getattr(points, quantity), "predicted")
+            printed, reproduced = (getattr(each, quantity) for each in (row, points))
+            yield place.compared(quantity, printed, reproduced, "predicted")
 
 
 @dataclass(frozen=True)
@@ -130,9 +134,10 @@ class _Place:
     angle: str | None = None
     orientation: str | None = None
 
-    def compared(self, quantity: str, row: Row, reproduced: float | None, basis: Basis) -> Compared:
-        """The row's number beside the reproduced one."""
-        printed = row[quantity]
+    def compared(
+        self, quantity: str, printed: float, reproduced: float | None, basis: Basis
+    ) -> Compared:
+        """The printed number beside the reproduced one."""
         ratio = None
         if reproduced is not None and printed != 0 and quantity not in _NO_RATIO:
             ratio = reproduced / printed

@@ -6,26 +6,103 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
-from typing import Any, Literal
+from typing import Literal, overload
 
+from msgspec import convert
 from scipy.special import fdtrc
 
-Row = dict[str, Any]
 TableNumber = Literal[1, 2, 3, 4]
 
 STRIP_RESIDUAL_DF = 58
 """Of Table 3: the only number for which its R2, F0 and p agree (`consistent_residual_df`)."""
 
 
-def published(table: TableNumber, **conditions: object) -> list[Row]:
-    """Rows of a printed table whose values equal the conditions, e.g. ``published(2, area=1)``.
+@dataclass(frozen=True, kw_only=True)
+class PrintedArea:
+    """A row of Table 1; the unit is in the name."""
 
-    Lengths in the unit that the column's name gives; slopes and intercepts of Table 3 as printed,
-    since the paper gives neither their unit nor the origin of time.
-    """
-    content = _content()[f"table{table}"]
-    rows = (dict(zip(content["columns"], row, strict=True)) for row in content["rows"])
-    return [row for row in rows if all(row[key] == value for key, value in conditions.items())]
+    area: int
+    principal_distance_mm: float
+    width_px: int
+    height_px: int
+    pixel_size_mm: float
+    scale_denominator: int
+    forward_overlap: float
+    side_overlap: float
+    n_strips: int
+    n_images: int
+    n_control_points: int
+    n_tie_points: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrintedParallax:
+    """A row of Table 2: RMS vertical parallax of the models of a strip, in three ways."""
+
+    area: int
+    strip: str
+    pos_max_mm: float
+    pos_min_mm: float
+    pos_mean_mm: float
+    independent_max_mm: float
+    independent_min_mm: float
+    independent_mean_mm: float
+    dependent_max_mm: float
+    dependent_min_mm: float
+    dependent_mean_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrintedLine:
+    """A row of Table 3, as printed: the paper gives neither unit nor origin of time."""
+
+    angle: str
+    intercept: float
+    slope_per_t: float
+    r_squared: float
+    f_statistic: float
+    p_value: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrintedCheckPoints:
+    """A row of Table 4: differences after removal of their mean."""
+
+    area: int
+    n_check_points: int
+    orientation: Literal["pos", "omega_corrected"]
+    max_horizontal_m: float
+    max_vertical_m: float
+    min_horizontal_m: float
+    min_vertical_m: float
+    rmse_horizontal_m: float
+    rmse_vertical_m: float
+
+
+PrintedRow = PrintedArea | PrintedParallax | PrintedLine | PrintedCheckPoints
+_ROWS: dict[TableNumber, type[PrintedRow]] = {
+    1: PrintedArea,
+    2: PrintedParallax,
+    3: PrintedLine,
+    4: PrintedCheckPoints,
+}
+
+
+@overload
+def published(table: Literal[1], **conditions: object) -> list[PrintedArea]: ...
+@overload
+def published(table: Literal[2], **conditions: object) -> list[PrintedParallax]: ...
+@overload
+def published(table: Literal[3], **conditions: object) -> list[PrintedLine]: ...
+@overload
+def published(table: Literal[4], **conditions: object) -> list[PrintedCheckPoints]: ...
+def published(table: TableNumber, **conditions: object) -> list[PrintedRow]:  # type: ignore[misc]
+    """Rows of a printed table whose values equal the conditions, e.g. ``published(2, area=1)``."""
+    return [
+        row
+        for row in _printed(table)
+        if all(getattr(row, name) == value for name, value in conditions.items())
+    ]
 
 
 @dataclass(frozen=True)
@@ -54,11 +131,11 @@ def recomputed(df_resid: int) -> tuple[PrintedRegression, ...]:
     """Table 3 with R2 and p computed from its F0 and residual degrees of freedom."""
     return tuple(
         PrintedRegression(
-            angle=row["angle"],
+            angle=row.angle,
             df_resid=df_resid,
-            r_squared=row["f_statistic"] / (row["f_statistic"] + df_resid),
-            p_value=float(fdtrc(1, df_resid, row["f_statistic"])),
-            zero_crossing_t=-row["intercept"] / row["slope_per_t"],
+            r_squared=row.f_statistic / (row.f_statistic + df_resid),
+            p_value=float(fdtrc(1, df_resid, row.f_statistic)),
+            zero_crossing_t=-row.intercept / row.slope_per_t,
         )
         for row in published(3)
     )
@@ -71,8 +148,7 @@ def consistent_residual_df(most: int = 1000) -> tuple[int, ...]:
 
 def _agree(rows: Iterable[PrintedRegression]) -> bool:
     return all(
-        _cut(each.r_squared, 3) == printed["r_squared"]
-        and _cut(each.p_value, 4) == printed["p_value"]
+        _cut(each.r_squared, 3) == printed.r_squared and _cut(each.p_value, 4) == printed.p_value
         for each, printed in zip(rows, published(3), strict=True)
     )
 
@@ -89,8 +165,8 @@ def implied_scatter(angle: str, time_spread: float) -> float:
     taken from F0, of which more digits are printed.
     """
     (row,) = published(3, angle=angle)
-    r_squared = row["f_statistic"] / (row["f_statistic"] + STRIP_RESIDUAL_DF)
-    return float(abs(row["slope_per_t"]) * time_spread * math.sqrt((1.0 - r_squared) / r_squared))
+    r_squared = row.f_statistic / (row.f_statistic + STRIP_RESIDUAL_DF)
+    return float(abs(row.slope_per_t) * time_spread * math.sqrt((1.0 - r_squared) / r_squared))
 
 
 def printed_gain(area: int) -> tuple[float, float]:
@@ -99,7 +175,7 @@ def printed_gain(area: int) -> tuple[float, float]:
         published(4, area=area, orientation=name) for name in ("pos", "omega_corrected")
     )
     horizontal, vertical = (
-        before[f"rmse_{side}_m"] / after[f"rmse_{side}_m"] - 1.0
+        getattr(before, f"rmse_{side}_m") / getattr(after, f"rmse_{side}_m") - 1.0
         for side in ("horizontal", "vertical")
     )
     return horizontal, vertical
@@ -128,18 +204,27 @@ def _rms_of_signs(n: int, k: int, smallest: float, largest: float) -> float:
     return math.sqrt(squares / n) if shared <= largest else math.inf
 
 
-def impossible_vertical_rmse() -> list[tuple[Row, float]]:
+def impossible_vertical_rmse() -> list[tuple[PrintedCheckPoints, float]]:
     """Rows of Table 4 whose vertical RMSE is below what a removed mean allows, with that, m."""
     least = [
-        least_zero_mean_rmse(row["n_check_points"], row["min_vertical_m"], row["max_vertical_m"])
+        least_zero_mean_rmse(row.n_check_points, row.min_vertical_m, row.max_vertical_m)
         for row in published(4)
     ]
     pairs = zip(published(4), least, strict=True)
-    return [(row, bound) for row, bound in pairs if row["rmse_vertical_m"] < bound]
+    return [(row, bound) for row, bound in pairs if row.rmse_vertical_m < bound]
 
 
-@lru_cache(maxsize=1)
-def _content() -> dict[str, Any]:
+@dataclass(frozen=True)
+class _Table:
+    """A table as it stands in the file."""
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[int | float | str, ...], ...]
+
+
+@lru_cache(maxsize=len(_ROWS))
+def _printed(table: TableNumber) -> tuple[PrintedRow, ...]:
     text = (files("posstats.papers.drift") / "published.toml").read_text(encoding="utf-8")
-    content: dict[str, Any] = tomllib.loads(text)
-    return content
+    content = convert(tomllib.loads(text)[f"table{table}"], _Table)
+    named = (dict(zip(content.columns, row, strict=True)) for row in content.rows)
+    return tuple(convert(each, _ROWS[table]) for each in named)

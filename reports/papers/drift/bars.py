@@ -1,6 +1,6 @@
 """Groups of bars in the words of the report on the first paper."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from posstats.contract.results import Results
 
@@ -31,6 +31,11 @@ def drawn(
     names = (words.text("bars.strip"), words.text("bars.parallax"))
     figure = bar_figure(bars, strips_with_models(results), "mm", names)
     return style.finish(figure, name, *said)
+
+
+def titles(words: Words, groups: Mapping[str, str]) -> dict[str, str]:
+    """Titles of groups by the names that the results have for them."""
+    return {name: words.of("bars", key) for name, key in groups.items()}
 
 
 def percent(part: Bars, whole: Bars) -> str:

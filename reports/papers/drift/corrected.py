@@ -9,7 +9,7 @@ from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
-from .bars import drawn, percent
+from .bars import drawn, percent, titles
 from .columns import millimetres
 from .report import Report
 from .words import Words
@@ -19,6 +19,7 @@ _SHOWN = {
     **{angle: f"{angle}_corrected" for angle in ANGLE_NAMES},
     "independent": "relative",
 }
+"""Groups of bars by their names in the results, with the keys of their titles."""
 
 
 def topic(words: Words, report: Report) -> Part:
@@ -58,8 +59,7 @@ def table(words: Words, run: Reproduction) -> Table:
 
 def figure(words: Words, area: int, results: Results) -> Drawing:
     """Figure 3 of an area."""
-    titles = {name: words.of("bars", key) for name, key in _SHOWN.items()}
-    bars = corrections(results, "mm", titles)
+    bars = corrections(results, "mm", titles(words, _SHOWN))
     pos, omega, phi, kappa, relative = bars
     title = words.text("corrected.figure_title", area=str(area))
     caption = words.text(

@@ -63,7 +63,7 @@ def _long_p(value: float) -> str:
 
 def _misprint(words: Words) -> str:
     (odd,) = published(2, area=1, strip="2")
-    mean, least = fmt.as_printed(odd["pos_mean_mm"]), fmt.as_printed(odd["pos_min_mm"])
+    mean, least = fmt.as_printed(odd.pos_mean_mm), fmt.as_printed(odd.pos_min_mm)
     return words.text("printed.misprint", mean=mean, least=least)
 
 
@@ -72,7 +72,7 @@ def _crossing(words: Words, run: Reproduction, df: int) -> str:
     times = sorted(each.zero_crossing_t for each in recomputed(df))
     omega = only_row(run.results[TABLE3_AREA].angle_error_summary, angle="omega", frame="ground")
     (line,) = published(3, angle="omega")
-    largest_rad = line["slope_per_t"] * (times[-1] - times[0])
+    largest_rad = line.slope_per_t * (times[-1] - times[0])
     mm_per_rad = run.findings[TABLE3_AREA].pos_mm / abs(known(omega.mean_rad))
     (strip,) = published(2, area=TABLE3_AREA, strip=STRIP)
     exposures = _exposures(run)
@@ -83,7 +83,7 @@ def _crossing(words: Words, run: Reproduction, df: int) -> str:
         taken=fmt.count(max(exposures) - min(exposures)),
         largest=fmt.angle(largest_rad, 2),
         parallax=fmt.with_unit(largest_rad * mm_per_rad, "mm", 2),
-        printed=fmt.as_printed(strip["pos_mean_mm"]),
+        printed=fmt.as_printed(strip.pos_mean_mm),
     )
 
 
@@ -111,8 +111,8 @@ def _impossible(words: Words) -> str:
     cases = words.joined(
         words.text(
             "printed.case",
-            rmse=fmt.as_printed(row["rmse_vertical_m"]),
-            orientation=words.of("oriented", row["orientation"]),
+            rmse=fmt.as_printed(row.rmse_vertical_m),
+            orientation=words.of("oriented", row.orientation),
             least=fmt.with_unit(least, "m"),
         )
         for row, least in impossible_vertical_rmse()
@@ -125,8 +125,8 @@ def _heights(words: Words, run: Reproduction) -> str:
     found = run.findings[2]
     return words.text(
         "printed.heights",
-        vertical=fmt.as_printed(printed["rmse_vertical_m"]),
-        horizontal=fmt.as_printed(printed["rmse_horizontal_m"]),
+        vertical=fmt.as_printed(printed.rmse_vertical_m),
+        horizontal=fmt.as_printed(printed.rmse_horizontal_m),
         simulated_vertical=fmt.with_unit(found.pos_vertical_m, "m", 2),
         simulated_horizontal=fmt.with_unit(found.pos_horizontal_m, "m", 2),
     )

@@ -1,5 +1,6 @@
 """Topic: scenarios, seeds, settings and software of the first paper's reproduction."""
 
+from posstats.contract.results import AnalysisSettings
 from posstats.papers.drift.areas import area_seed
 from posstats.papers.drift.comparison import TABLE3_AREA
 
@@ -18,9 +19,14 @@ def topic(words: Words, report: Report) -> Part:
     text = words.text("provenance.text", seed=str(run.seed))
     seeds = [_seed(words, area, area_seed(run.seed, area)) for area in run.results]
     settings = [
-        (words.of("setting", name), str(getattr(results.settings, name))) for name in _SETTINGS
+        (words.of("setting", name), words.known("setting_value", str(value)))
+        for name, value in _chosen(results.settings).items()
     ]
     return provenance.topic(words, text, [*seeds, *settings], results.versions.items(), "HI")
+
+
+def _chosen(settings: AnalysisSettings) -> dict[str, object]:
+    return {name: getattr(settings, name) for name in _SETTINGS}
 
 
 def _seed(words: Words, area: int, seed: int) -> tuple[str, str]:

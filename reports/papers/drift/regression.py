@@ -6,12 +6,7 @@ from posstats.contract.results import Regression, Results
 from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.drift.findings import known, only_row
 
-from ...block.line_figures import (
-    Panel,
-    generalised,
-    legend_entries,
-    ordinary,
-)
+from ...block.line_figures import Panel, generalised, legend_entries, ordinary
 from ...block.view import errors_of, strips, used_errors
 from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part

@@ -5,16 +5,15 @@ from posstats.numerics.kernels.rotation import ANGLE_NAMES
 from posstats.papers.drift.reproduction import Reproduction
 
 from ...block.bar_figures import held_angles
+from ...block.view import HELD
 from ...document import format as fmt
 from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
-from .bars import drawn, percent
+from .bars import drawn, percent, titles
 from .columns import millimetres
 from .report import Report
 from .words import Words
-
-_HELD = ("angles", "omega", "phi", "kappa", "none")
 
 
 def topic(words: Words, report: Report) -> Part:
@@ -34,10 +33,10 @@ def table(words: Words, run: Reproduction) -> Table:
     """Numbers behind Figure 1: parallax with angles held, and what each angle keeps."""
     found = list(run.findings.values())
     held, kept = words.text("sources.held"), words.text("sources.kept")
-    titles = {"angles": words.text("sources.all_three")}
-    titles |= {angle: words.angle(angle) for angle in ANGLE_NAMES}
+    heads = {"angles": words.text("sources.all_three")}
+    heads |= {angle: words.angle(angle) for angle in ANGLE_NAMES}
     columns = [text_column(words.text("area.column"), [str(each.area) for each in found])]
-    for name, title in titles.items():
+    for name, title in heads.items():
         columns.append(millimetres(title, [getattr(e, f"held_{name}_mm") for e in found], held))
     none = words.text("sources.none")
     columns.append(millimetres(none, [each.dependent_mm for each in found], held))
@@ -49,7 +48,7 @@ def table(words: Words, run: Reproduction) -> Table:
 
 def figure(words: Words, area: int, results: Results) -> Drawing:
     """Figure 1 of an area."""
-    bars = held_angles(results, "mm", {held: words.of("bars", held) for held in _HELD})
+    bars = held_angles(results, "mm", titles(words, {held: held for held in HELD}))
     every, omega, phi, kappa, none = bars
     title = words.text("sources.figure_title", area=str(area))
     caption = words.text(

@@ -24,7 +24,7 @@ def test_a_count_decides_on_the_plural():
     (one,), (two,) = (listing("strips_of_one_image", ids) for ids in (["7"], ["7", "9"]))
     assert ENGLISH.notice(one) == "1 strip of one image: 7."
     assert ENGLISH.notice(two) == "2 strips of one image: 7, 9."
-    assert CHINESE.notice(two) == "2 条航线仅有一张影像：7、9。"
+    assert CHINESE.notice(two) == "2 条航带仅有一张影像：7、9。"
 
 
 def test_of_many_ids_the_first_are_named_and_the_others_counted():

@@ -84,3 +84,12 @@ def test_a_view_holds_its_places_and_is_turned_where_north_is_long():
     paper = view.on_paper(PLACE)
     np.testing.assert_allclose(np.diff(paper[:, 0]), np.diff(PLACE[:, 1]))
     np.testing.assert_allclose(np.diff(paper[:, 1]), -np.diff(PLACE[:, 0]))
+
+
+def test_a_turned_plan_is_a_rotation_of_the_ground_not_a_mirror_image():
+    view = PlanView(west=100.0, east=200.0, south=0.0, north=1000.0, turned=True)
+    east_north = [(110.0, 20.0), (190.0, 20.0), (190.0, 900.0)]
+    ground, paper = np.array(east_north), view.on_paper(east_north)
+    sides = [np.diff(corners, axis=0) for corners in (ground, paper)]
+    assert np.linalg.det(sides[0]) == pytest.approx(np.linalg.det(sides[1]))
+    assert paper[0].tolist() == [20.0, 90.0]

@@ -15,11 +15,15 @@ from posstats.reports.block import error_sources
 from posstats.reports.block.line_figures import Panel, generalised, ordinary
 from posstats.reports.block.words import words_in
 from posstats.reports.document.format import MICRORADIAN
-from posstats.reports.papers.drift.figures import draw_area
+from posstats.reports.papers.drift import figures, words
 
 N_STRIPS, PER_STRIP = 3, 10
 GREY, ABOVE = "#d5dae0", "#d55e00"
 HELD = ("angles", "omega", "phi", "kappa", "none")
+
+
+def drawings_of(area, results, language="en"):
+    return figures.draw_area(words.words_in(language), area, results)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +38,7 @@ def results():
 
 @pytest.fixture(scope="module")
 def drawn(results):
-    return draw_area(1, results)
+    return drawings_of(1, results)
 
 
 @dataclass(frozen=True)
@@ -115,7 +119,7 @@ def test_a_strip_without_a_value_has_no_bar(results):
         return replace(row, mean_mm=None) if lacks else row
 
     lacking = with_rows(results, "error_sources", without)
-    tops, grey = bars(draw_area(1, lacking)[0])
+    tops, grey = bars(drawings_of(1, lacking)[0])
     assert np.isfinite(tops).sum() == np.isfinite(grey).sum() == 5 * N_STRIPS - 1
 
 
@@ -239,7 +243,7 @@ def test_each_panel_states_r_squared_and_p_and_its_unit(results, drawn):
 def test_r_squared_is_never_rounded_to_nothing_or_to_certainty(results):
     share = {"omega": 0.99996, "phi": 2.5e-5, "kappa": 0.5}
     extreme = with_rows(results, "regression", lambda row: replace(row, r_squared=share[row.angle]))
-    heads = " ".join(picture(draw_area(1, extreme)[1]).texts)
+    heads = " ".join(picture(drawings_of(1, extreme)[1]).texts)
     assert "omega: R² > 0.9999" in heads
     assert "phi: R² < 0.0001" in heads
 
@@ -256,7 +260,7 @@ def test_captions_say_simulated_name_the_area_and_give_the_shares(results, drawn
 
 def test_pictures_of_two_areas_can_stand_on_one_page(results, drawn):
     ids = []
-    for drawing in (*drawn, *draw_area(2, results)):
+    for drawing in (*drawn, *drawings_of(2, results)):
         root = ET.fromstring(drawing.svg)  # noqa: S314 - made here
         ids += [node.get("id") for node in root.iter() if node.get("id")]
     assert len(ids) == len(set(ids))
@@ -267,7 +271,7 @@ def test_pictures_of_two_areas_can_stand_on_one_page(results, drawn):
 
 @pytest.mark.parametrize("n_strips", [1, 3, 9])
 def test_no_text_leaves_its_picture_or_touches_another(n_strips):
-    for drawing in draw_area(3, area_results(n_strips=n_strips, per_strip=8)):
+    for drawing in drawings_of(3, area_results(n_strips=n_strips, per_strip=8)):
         root = ET.fromstring(drawing.svg)  # noqa: S314 - made here
         _, _, width, height = (float(number) for number in root.get("viewBox").split())
         boxes = [_box(node) for node in root.findall(".//{*}text")]
@@ -299,7 +303,7 @@ def _overlap(one, other):
 
 def test_ids_too_many_for_the_room_are_written_under_some_bars():
     many = area_results(n_strips=40, per_strip=4)
-    texts = picture(draw_area(1, many)[0]).texts
+    texts = picture(drawings_of(1, many)[0]).texts
     written = [text for text in texts if re.fullmatch(r"\d+", text)]
     assert written[0] == "1"
     assert len(HELD) <= len(written) < 40 * len(HELD)
@@ -312,4 +316,4 @@ def test_zero_parallax_has_no_place_on_a_logarithmic_scale(results):
 
 def test_pictures_of_a_large_area_are_small():
     large = area_results(n_strips=9, per_strip=36)
-    assert max(len(drawing.svg.encode()) for drawing in draw_area(2, large)) < 150_000
+    assert max(len(drawing.svg.encode()) for drawing in drawings_of(2, large)) < 150_000

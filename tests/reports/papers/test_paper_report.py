@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from catalogues import OF
 from click.testing import CliRunner
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
@@ -24,10 +23,12 @@ from posstats.papers.drift.findings import AreaFindings, find
 from posstats.papers.drift.published import published
 from posstats.papers.drift.seeds import repeated
 from posstats.reports.commands import paper as paper_command
+from posstats.reports.commands import wucaps as wucaps_command
 from posstats.reports.commands.cli import cli
 from posstats.reports.output.staged_folder import staged_folder
-from posstats.reports.papers.drift import areas as paper_areas
 from posstats.reports.papers.drift import figures as paper_figures
+from posstats.reports.papers.drift import running
+from posstats.reports.papers.drift.words import words_in
 from posstats.synthetic import simulate
 
 COMMAND = Path(sys.executable).with_name("posstats")
@@ -49,7 +50,7 @@ def run_paper(out: Path, *options: str) -> str:
 def folder(tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("paper") / "out"
     told = run_paper(out)
-    assert f"8. {OF['en', 'drift_paper'].text('title.orthophoto')}" in told
+    assert f"8. {words_in('en').text('title.orthophoto')}: " in told
     return out
 
 
@@ -142,7 +143,7 @@ def test_every_published_number_is_compared_once(comparison):
 def test_reproduced_strip_statistics_are_those_of_the_models(comparison, results):
     """Table 2 against the models' own values, not against the rows it is made from."""
     for area, pixel_mm in ((1, 0.012), (2, 0.012), (3, 0.009)):
-        for strip in {row["strip"] for row in published(2, area=area)}:
+        for strip in {row.strip for row in published(2, area=area)}:
             models = [row for row in results[area].models if row.strip == strip]
             rms_mm = np.array([model.pos_px for model in models]) * pixel_mm
             expected = {"max": rms_mm.max(), "min": rms_mm.min(), "mean": rms_mm.mean()}
@@ -234,8 +235,8 @@ def files_of(folder: Path) -> dict[Path, bytes]:
 
 def test_the_same_seed_and_date_give_the_same_files_of_an_area(folder, comparison, tmp_path):
     """The smallest area, computed anew in this process."""
-    values, _ = paper_areas._analysed(3, 1, tmp_path, comparison["created"])
-    paper_areas._written(3, values, tmp_path)
+    values, _ = running._analysed(3, 1, tmp_path, comparison["created"])
+    running._written(3, values, tmp_path, "en")
     assert files_of(tmp_path) == files_of(folder / "area3")
 
 
@@ -243,8 +244,10 @@ def test_the_same_numbers_and_date_give_the_same_pages(
     folder, results, causes, tmp_path, monkeypatch
 ):
     areas = {
-        area: paper_areas.AreaOutput(
-            results[area], causes[area], paper_figures.draw_area(area, results[area])
+        area: running.AreaOutput(
+            results[area],
+            causes[area],
+            paper_figures.draw_area(words_in("en"), area, results[area]),
         )
         for area in AREAS
     }
@@ -269,25 +272,31 @@ def killed(*_):
 
 
 def test_a_killed_area_is_an_error_that_says_so(monkeypatch, tmp_path):
-    monkeypatch.setattr(paper_areas, "_analysed", killed)
+    monkeypatch.setattr(running, "_analysed", killed)
     with pytest.raises(PosstatsError, match="killed"):
-        paper_areas.run_areas(tmp_path, 1, "")
+        running.run_areas(tmp_path, 1, "", "en")
 
 
 @pytest.mark.parametrize(
-    ("options", "seed", "pdf"), [([], 1, True), (["--seed", "7", "--no-pdf"], 7, False)]
+    ("options", "seed", "language", "pdf"),
+    [([], 1, "en", True), (["--seed", "7", "--language", "zh", "--no-pdf"], 7, "zh", False)],
 )
-def test_the_command_hands_on_seed_and_pdf(monkeypatch, tmp_path, options, seed, pdf):
+@pytest.mark.parametrize(
+    ("name", "command"), [("paper", paper_command), ("wucaps", wucaps_command)]
+)
+def test_the_commands_hand_on_seed_language_and_pdf(
+    monkeypatch, tmp_path, name, command, options, seed, language, pdf
+):
     called = {}
 
-    def record(out, seed, *, pdf):
-        called.update(out=out, seed=seed, pdf=pdf)
+    def record(out, seed, *, language, pdf):
+        called.update(out=out, seed=seed, language=language, pdf=pdf)
         return ["written"]
 
-    monkeypatch.setattr(paper_command, "reproduce_paper", record)
-    run = CliRunner().invoke(cli, ["paper", "--out", str(tmp_path), *options])
+    monkeypatch.setattr(command, f"reproduce_{name}", record)
+    run = CliRunner().invoke(cli, [name, "--out", str(tmp_path), *options])
     assert run.output == "written\n"
-    assert called == {"out": tmp_path, "seed": seed, "pdf": pdf}
+    assert called == {"out": tmp_path, "seed": seed, "language": language, "pdf": pdf}
 
 
 @pytest.mark.parametrize(
@@ -326,7 +335,7 @@ def test_an_outdated_pdf_does_not_stay_beside_a_new_page(tmp_path):
 HELD = """
 import os, signal, sys
 from posstats.reports.commands.cli import main
-from posstats.reports.papers.drift import areas
+from posstats.reports.papers.drift import running
 
 told = int(sys.argv.pop(1))
 
@@ -334,7 +343,7 @@ def wait(*_):
     os.write(told, b".")
     signal.pause()
 
-areas._analysed = areas._reported = wait
+running._analysed = running._reported = wait
 main()
 """
 

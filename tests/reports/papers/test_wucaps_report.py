@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import pytest
-from catalogues import OF
 from click.testing import CliRunner
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
@@ -15,6 +14,7 @@ from posstats.papers.wucaps.situations import SITUATIONS
 from posstats.reports.commands import wucaps as wucaps_command
 from posstats.reports.commands.cli import cli
 from posstats.reports.commands.wucaps import SituationRun, run_situation
+from posstats.reports.papers.wucaps.words import words_in
 
 # One worker runs the experiment for all tests of this file.
 pytestmark = pytest.mark.xdist_group("wucaps")
@@ -44,7 +44,9 @@ def folder(tmp_path_factory, runs) -> Path:
 
     out = tmp_path_factory.mktemp("wucaps") / "out"
     told = run_wucaps(out, run_one)
-    assert f"5. {OF['en', 'wucaps'].text('title.calibration_is_dispensable')}: holds" in told
+    words = words_in("en")
+    title = words.text("title.calibration_is_dispensable")
+    assert f"5. {title}: {words.text('conclusions.holds')}" in told
     return out
 
 
@@ -144,7 +146,7 @@ def test_numbers_of_the_page_are_readable(page):
     text = plain(" ".join(read(page.split("</style>", 1)[1]).texts))
     assert not re.search(r"\b(None|nan|NaN|inf|null)\b", text)
     assert not re.search(r"\d\.\d{6,}", text)
-    assert "mountainous" in text
+    assert words_in("en").terrain("mountain") in text
     assert not re.search(r"(?<!wucaps-)\bmountain\b", text, re.IGNORECASE)
 
 
