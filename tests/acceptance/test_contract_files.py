@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from finding_parts import assert_finding
 from profile_texts import DOCS, OWN, documented_contract, findings_of, write
 
 from posstats.acceptance import profile_reading as reading
@@ -104,10 +105,9 @@ def test_a_contract_may_leave_the_profile_to_the_command(tmp_path):
     extending = write(tmp_path, other="extends = 'jrc'")
     assert load_contract(extending, base="jrc")[0].name == "jrc"
     (finding,) = findings_of(extending, base="nssda")
-    assert finding == (
-        "other.toml -> jrc.toml: extends another profile than nssda, which was asked for"
-    )
-    with pytest.raises(PosstatsError, match=r"no profile file 'nsda', and no"):
+    assert_finding(finding, "other.toml -> jrc.toml", "extends another profile")
+    assert "nssda" in finding
+    with pytest.raises(PosstatsError, match="no profile file 'nsda'"):
         load_contract(path, base="nsda")
 
 
@@ -116,7 +116,7 @@ def test_a_contract_of_parties_alone_has_no_profile(tmp_path):
     profile, contract = load_contract(path)
     assert profile is None
     assert (contract.number, contract.remarks) == ("<b>7</b>", "a\nb")
-    with pytest.raises(ProfileFormatError, match=r"contract\.toml: found no requirement"):
+    with pytest.raises(ProfileFormatError, match=r"contract\.toml: .*no requirement"):
         load_profile(path)
 
 
@@ -162,12 +162,10 @@ def test_a_limit_without_a_usable_value_for_the_product_is_a_finding(tmp_path):
         "threshold = 'class_h - gsd'\n[product]\ngsd_m = 0.2\nclass_h_m = 0.2\n",
     )
     profile, contract = load_contract(path)
-    assert profile.product_findings(contract.product) == (
-        "requirement a, limit: found '1 / (gsd - class_h)': divides by zero",
-    )
-    assert profile.product_findings(Product(gsd_m=0.3, class_h_m=0.2)) == (
-        "requirement b, threshold: found 'class_h - gsd': is -0.1, expected a value of at least 0",
-    )
+    (limit,) = profile.product_findings(contract.product)
+    assert_finding(limit, "requirement a, limit", "'1 / (gsd - class_h)': divides")
+    (threshold,) = profile.product_findings(Product(gsd_m=0.3, class_h_m=0.2))
+    assert_finding(threshold, "requirement b, threshold", "'class_h - gsd': is -0.1", "a value of")
     assert profile.product_findings(Product()) == ()  # not stated: not assessed
 
 

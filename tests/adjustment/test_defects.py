@@ -175,7 +175,7 @@ def test_a_camera_without_rays_is_named():
     )
     (defect,) = explained(problem)
     assert defect.reason.code == "open_unseen"
-    assert not_determined(UndeterminedBlockError([defect], [])).startswith("camera_c of spare is")
+    assert not_determined(UndeterminedBlockError([defect], [])).startswith("camera_c of spare ")
 
 
 def test_an_image_without_rays_and_pos_is_named():

@@ -178,7 +178,7 @@ def test_turning_the_ground_frame_changes_no_parallax_and_no_height(block, analy
 
 
 def test_a_setting_that_does_not_exist_is_named():
-    with pytest.raises(PosstatsError, match=r"frame is 'aero'.*ground, camera, auto"):
+    with pytest.raises(PosstatsError, match=r"'aero'.*ground, camera, auto"):
         Settings(frame="aero")
 
 

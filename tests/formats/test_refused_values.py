@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from block_folders import findings, refused, set_cell
+from finding_parts import assert_finding, parts
 from perfect_block import edit, perfect_block, written
 
 from posstats.errors import BlockFormatError
@@ -51,7 +52,7 @@ def test_missing_columns_are_named(folder, name, column) -> None:
 def test_what_is_no_finite_number_is_refused(folder, name, column, value) -> None:
     set_cell(folder, name, 2, column, value)
     shown = repr(value) if value else "nothing"
-    refused(folder, f"{name}:4, {column}: found {shown}, expected a finite")
+    refused(folder, f"{name}:4, {column}: found {shown}, expected", "finite")
 
 
 def test_line_numbers_count_blank_lines_and_lines_in_quotes(folder) -> None:
@@ -66,8 +67,8 @@ def test_line_numbers_count_blank_lines_and_lines_in_quotes(folder) -> None:
 def test_rows_of_another_length_are_refused(folder) -> None:
     edit(folder, "tie_points.csv", ("\nP", "\nP0000,1_000,1.5,12,5\n\nshort\nP"))
     found = findings(folder)
-    assert found[0] == "tie_points.csv:2: found 5 values, expected 4; decimal commas?"
-    assert found[1] == "tie_points.csv:4: found 1 values, expected 4"
+    assert_finding(found[0], "tie_points.csv:2", "5 values", "4; decimal commas?")
+    assert parts(found[1]) == ("tie_points.csv:4", "1 values", "4")
 
 
 def test_a_column_twice_is_refused(folder) -> None:
@@ -78,10 +79,8 @@ def test_a_column_twice_is_refused(folder) -> None:
 def test_an_image_twice_is_refused(folder) -> None:
     set_cell(folder, "orientations.csv", 3, "image", "1_000")
     found = findings(folder)
-    assert (
-        "orientations.csv:5, image: found image '1_000' again (orientations.csv:2, image)"
-        in found[0]
-    )
+    again = "image '1_000' again (orientations.csv:2, image)"
+    assert_finding(found[0], "orientations.csv:5, image", again)
 
 
 def test_a_point_twice_in_one_image_is_refused(folder) -> None:
@@ -90,7 +89,8 @@ def test_a_point_twice_in_one_image_is_refused(folder) -> None:
     point, image = lines[3].split(",")[:2]
     refused(
         folder,
-        f"tie_points.csv:{len(lines) + 1}, point: found point {point!r} again in image {image!r}",
+        f"tie_points.csv:{len(lines) + 1}, point: found point {point!r}",
+        f"again in image {image!r}",
         "(tie_points.csv:4, point)",
     )
 
@@ -98,7 +98,7 @@ def test_a_point_twice_in_one_image_is_refused(folder) -> None:
 @pytest.mark.parametrize("name", ["tie_points.csv", "adjusted.csv"])
 def test_unknown_images_are_refused(folder, name) -> None:
     set_cell(folder, name, 1, "image", "unknown")
-    refused(folder, f"{name}:3, image: found image 'unknown'")
+    refused(folder, f"{name}:3, image: found ", "'unknown'")
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_cameras_of_images_must_be_known(folder) -> None:
     table.assign(camera=["a", "b"] * 3 + ["c", "a"]).to_csv(
         folder / "orientations.csv", index=False
     )
-    refused(folder, "orientations.csv:8, camera: found camera 'c', expected 'a' or 'b'")
+    refused(folder, "orientations.csv:8, camera: found camera 'c'", "expected 'a' or 'b'")
 
 
 @pytest.mark.parametrize(
@@ -167,10 +167,10 @@ def test_ground_points_have_a_role_and_stand_once(folder) -> None:
     first = pd.read_csv(folder / "ground_points.csv", dtype=str).point[0]
     set_cell(folder, "ground_points.csv", 4, "point", first)
     found = findings(folder)
-    assert [each.split(", expected")[0] for each in found] == [
-        "ground_points.csv:3, role: found 'Check'",
-        "ground_points.csv:5, sigma_z: found -1",
-        f"ground_points.csv:6, point: found point {first!r} again",
+    assert [parts(each)[:2] for each in found] == [
+        ("ground_points.csv:3, role", "'Check'"),
+        ("ground_points.csv:5, sigma_z", "-1"),
+        ("ground_points.csv:6, point", f"point {first!r} again"),
     ]
 
 
@@ -189,7 +189,7 @@ def test_a_geoid_grid_beside_the_block_turns_heights_ellipsoidal(tmp_path) -> No
     folder = written(perfect_block("EPSG:32631"), tmp_path)
     ellipsoidal = read_block(folder).orientations.position_m
     edit(folder, "block.toml", ('"ellipsoidal"', '"orthometric"\ngeoid = "geoid.gtx"'))
-    refused(folder, "geoid.gtx: cannot be read (No such file")
+    refused(folder, "geoid.gtx: ", "(No such file")
     (folder / "geoid.gtx").write_bytes(b"no grid")
     refused(folder, "block.crs: PROJ", "geoid.gtx")
     header = struct.pack(">4d2i", 40.0, 0.0, 4.0, 4.0, 5, 5)
@@ -201,7 +201,7 @@ def test_a_geoid_grid_beside_the_block_turns_heights_ellipsoidal(tmp_path) -> No
     elsewhere = header[:8] + struct.pack(">d", 90.0) + header[16:] + bytes(100)
     (folder / "elsewhere.gtx").write_bytes(elsewhere)
     edit(folder, "block.toml", ("geoid.gtx", "elsewhere.gtx"))
-    assert all("outside EPSG:32631 or its geoid" in text for text in findings(folder))
+    assert all("EPSG:32631 or its geoid" in text for text in findings(folder))
 
 
 def test_positions_outside_the_crs_are_refused(tmp_path) -> None:

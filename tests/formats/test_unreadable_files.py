@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet
 import pytest
 from block_folders import as_parquet, findings, refused, set_cell
+from finding_parts import assert_finding, parts
 
 
 def test_a_missing_folder_or_a_file_is_no_block(folder) -> None:
@@ -73,9 +74,9 @@ def test_a_folder_in_place_of_a_file_is_refused(folder) -> None:
         (folder / name).unlink()
         (folder / name).mkdir()
     found = findings(folder)
-    assert [each.split(",")[0] for each in found] == [
-        "block.toml: found a folder",
-        "tie_points.csv: found a folder",
+    assert [parts(each)[:2] for each in found] == [
+        ("block.toml", "a folder"),
+        ("tie_points.csv", "a folder"),
     ]
 
 
@@ -88,7 +89,7 @@ def test_an_unreadable_file_is_refused(folder, monkeypatch) -> None:
         return read_bytes(path)
 
     monkeypatch.setattr(Path, "read_bytes", denied)
-    refused(folder, "tie_points.csv: cannot be read (Permission denied)")
+    refused(folder, "tie_points.csv: ", "(Permission denied)")
 
 
 def test_csv_and_parquet_of_one_table_are_refused(folder) -> None:
@@ -112,7 +113,7 @@ def test_decimal_commas_are_named(folder) -> None:
     path = folder / "tie_points.csv"
     head, *rows = path.read_text().splitlines()
     path.write_text("\n".join([head, *(row.replace(".", ",") for row in rows)]))
-    assert "tie_points.csv:2: found 6 values, expected 4; decimal commas?" in findings(folder)
+    assert ("tie_points.csv:2", "6 values", "4; decimal commas?") in map(parts, findings(folder))
 
 
 @pytest.mark.parametrize("column", ["point", "image"])
@@ -124,9 +125,9 @@ def test_ids_of_a_type_that_is_no_text_are_one_finding(folder, column) -> None:
 def test_truth_values_are_no_numbers(folder) -> None:
     as_parquet(folder, "orientations", "omega", pa.bool_())
     found = findings(folder)
-    assert found[0].startswith("orientations.parquet, row 1, omega: found True,")
+    assert_finding(found[0], "orientations.parquet, row 1, omega", "True")
 
 
 def test_an_empty_block_toml_is_no_table(folder) -> None:
     (folder / "block.toml").write_bytes(b"")
-    refused(folder, "block.toml: found an empty")
+    refused(folder, "block.toml: found an ")

@@ -190,5 +190,5 @@ def test_hopeless_angles_are_an_error_in_words():
 def test_too_large_a_block_is_refused_before_memory_runs_out(monkeypatch):
     pairs, priors, _ = problem()
     monkeypatch.setattr(coplanarity_adjustment, "MAX_IMAGES", 7)
-    with pytest.raises(GeometryError, match="at most 7 images at once"):
+    with pytest.raises(GeometryError, match="at most 7 images"):
         adjust_coplanarity(pairs, priors)

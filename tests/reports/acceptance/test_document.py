@@ -82,7 +82,8 @@ def test_the_first_page_names_standard_class_orientation_and_statement(pages):
     for words in (
         "PA-3F2A-91C0-77DE",
         "2026-01-05",
-        "horizontal 10 cm, vertical 10 cm",
+        "horizontal 10 cm, ",
+        "vertical 10 cm",
         said("orientation.selected"),
         said("orientation_reason.selected"),
         "RMSE H = 7.2 (cm)",

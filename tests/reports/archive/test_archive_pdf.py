@@ -42,13 +42,8 @@ def test_the_document_meets_what_can_be_checked_of_level_a(archive):
 def test_what_weasyprint_leaves_out_would_be_seen(inputs, monkeypatch):
     monkeypatch.setattr(archive_pdf, "mend", lambda document, pdf: None)
     found = set(problems(document(results_of(inputs), render=render_archive)))
-    assert {
-        "a header cell without scope",
-        "an image with interpolation",
-        "associated files are not the embedded ones, each once",
-        "ids of elements are not in their tree",
-        "marked content outside of the structure",
-    } <= found
+    for fault in ("without scope", "interpolation", "associated files", "ids", "marked content"):
+        assert any(fault in each for each in found), fault
 
 
 def test_another_process_writes_the_same_bytes(archive, inputs):

@@ -69,7 +69,7 @@ def foreign(**options) -> bytes:
         (b"%PDF-1.7\nstartxref\n5\n%%EOF\n", "damaged"),
         (b"%PDF-1.7\nxref\ntrailer <</Prev 9>>\nstartxref\n9\n%%EOF\n", "circle"),
         (b"%PDF-1.7\nxref\n0 0\ntrailer <<>>\nstartxref\n9\n%%EOF\n", "damaged"),
-        (foreign(), "no acceptance document of posstats"),
+        (foreign(), "no acceptance document"),
         (foreign(object_stream_mode=pikepdf.ObjectStreamMode.generate), "another program"),
         (foreign(encryption=pikepdf.Encryption(owner="o", user="")), "encrypted"),
         (foreign(encryption=pikepdf.Encryption(owner="o", user="u", R=4)), "encrypted"),
