@@ -174,7 +174,9 @@ def analyse(
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
-@language_option("Of the report; the terminal and adjustment.json stay English.")
+@language_option(
+    "Of the report, or of why there is none; the terminal and adjustment.json stay English."
+)
 @no_pdf_option("report")
 @clear_errors
 def adjust(
