@@ -1,4 +1,4 @@
-"""The English sentences of ``adjustment.json``, and of a block that is not determined."""
+"""The English sentences of ``adjustment.json``; what is said of a block that is not determined."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -6,6 +6,7 @@ from dataclasses import replace
 from posstats.adjustment.defects import Defect
 from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
 
 from ..document import format as fmt
@@ -31,9 +32,9 @@ def with_words(results: AdjustmentResults) -> AdjustmentResults:
     )
 
 
-def not_determined(error: UndeterminedBlockError) -> str:
-    """What is open, why, and what would help, in English."""
-    words = words_in("en")
+def not_determined(error: UndeterminedBlockError, language: Language = DEFAULT_LANGUAGE) -> str:
+    """What is open, why, and what would help."""
+    words = words_in(language)
     return words.sentences(_not_determined(words, error))
 
 

@@ -183,6 +183,11 @@ def test_a_chinese_document_verifies_too(folder, analysed, tmp_path):
     done = run("accept", analysed, "--contract", folder.parent / "contract.toml", "--language",
                "zh", "--out", tmp_path)  # fmt: skip
     assert done.exit_code == 0, done.output
+    said = OF["zh", "acceptance"]
+    assert done.output.startswith(said.text("verdict.accepted"))
+    assert said.text("terminal_orientation.bundle") in done.output
+    for word in ("ACCEPTED", "simulated", "against", "document:", " pass ", "bundle"):
+        assert word not in done.output.replace(str(tmp_path), "")
     assert "验收" in (tmp_path / "acceptance.html").read_text(encoding="utf-8")
     assert problems((tmp_path / "acceptance.pdf").read_bytes()) == []
     assert run("verify", tmp_path / "acceptance.pdf").exit_code == 0
