@@ -1,9 +1,10 @@
-"""The English sentences of ``adjustment.json``, and of a block that is not determined."""
+"""The English sentences of ``adjustment.json``, and of a block that cannot be adjusted."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from posstats.adjustment.defects import Defect
+from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.contract.adjustment import AdjustmentResults
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
@@ -35,6 +36,12 @@ def not_determined(error: UndeterminedBlockError) -> str:
     """What is open, why, and what would help, in English."""
     words = words_in("en")
     return words.sentences(_not_determined(words, error))
+
+
+def mistaken(error: MistakenDataError) -> str:
+    """The mistake because of which measurements contradict each other, in English."""
+    words = words_in("en")
+    return words.text("defect.mistaken", mistake=words.notice(error.mistake))
 
 
 def _not_determined(words: Words, error: UndeterminedBlockError) -> Iterator[str]:

@@ -50,12 +50,14 @@ class Words(document.Words):
         return fmt.with_unit(unit.scaled(parameter.value), unit.name)
 
     def _written(self, said: Notice, name: str, plain: bool) -> str:
-        """A value of a notice; control points are counted, groups of observations named."""
+        """A value of a notice; control points are counted, groups and units are named."""
         value = said.values[name]
         if name == "n_control" and isinstance(value, int):
             return self.counted("control.count", value) if value else self.text("control.no")
         if name == "groups" and isinstance(value, tuple):
             return self._row(self.of("weight", str(group)) for group in value)
+        if name in ("angle_unit", "stated_unit"):
+            return self.of("angle_unit", str(value))
         if name == "parameters" and isinstance(value, tuple):
             return self._row(map(str, value))
         return super()._written(said, name, plain)

@@ -8,6 +8,7 @@ from typing import cast, get_args
 from posstats.adjustment import Adjustment, adjust_block
 from posstats.adjustment.calibration import calibrated
 from posstats.adjustment.control import read_ids
+from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.steps import Progress
 from posstats.adjustment.undetermined import UndeterminedBlockError
@@ -22,7 +23,7 @@ from posstats.settings import AdjustmentSettings
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
-from ..adjustment.wording import not_determined, with_words
+from ..adjustment.wording import mistaken, not_determined, with_words
 from ..adjustment.words import words_in
 from ..block.report import write_pages
 from ..block.summary import WIDTH
@@ -57,12 +58,15 @@ def adjusted(block: Block, settings: AdjustmentSettings, progress: Progress) -> 
     Raises
     ------
     PosstatsError
-        If there is none: what is not determined, why, and what would help, in words.
+        If there is none: what is not determined, why, and what would help, or which mistake
+        makes the measurements contradict each other, in words.
     """
     try:
         return adjust_block(block, settings, progress=progress)
     except UndeterminedBlockError as error:
         raise PosstatsError(not_determined(error)) from error
+    except MistakenDataError as error:
+        raise PosstatsError(mistaken(error)) from error
 
 
 def adjust_folder(
