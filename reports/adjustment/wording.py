@@ -1,6 +1,6 @@
 """The English sentences of ``adjustment.json``, and of a block that cannot be adjusted."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from posstats.adjustment.defects import Defect
@@ -9,7 +9,6 @@ from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.contract.adjustment import AdjustmentResults
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
 
-from ..document import format as fmt
 from .words import Words, words_in
 
 _SHOWN = 6
@@ -57,10 +56,12 @@ def _not_determined(words: Words, error: UndeterminedBlockError) -> Iterator[str
 def _subject(words: Words, defect: Defect) -> str:
     if defect.parameters:
         called = [_called(words, each) for each in defect.parameters]
-        return words.counted("defect.parameters", len(called), names=_listed(words, called))
+        return words.counted(
+            "defect.parameters", len(called), names=words.first(called, _SHOWN, sentence=True)
+        )
     if not defect.images:
         return words.text("defect.all_images")
-    names = _listed(words, defect.images)
+    names = words.first(defect.images, _SHOWN, sentence=True)
     return words.counted("defect.images", len(defect.images), names=names)
 
 
@@ -68,11 +69,3 @@ def _called(words: Words, parameter: CommonParameter) -> str:
     if parameter.scope == BLOCK:
         return parameter.name
     return words.text("defect.of_scope", name=parameter.name, scope=parameter.scope)
-
-
-def _listed(words: Words, names: Sequence[str]) -> str:
-    """Names, no more of them than can be read."""
-    shown = list(names[:_SHOWN])
-    if len(names) > _SHOWN:
-        shown.append(words.text("list.more", n=fmt.count(len(names) - _SHOWN)))
-    return words.joined(shown)
