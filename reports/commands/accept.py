@@ -17,10 +17,10 @@ from posstats.errors import PosstatsError
 
 from ..acceptance.data import Demand, assembled, embedded
 from ..acceptance.writing import read_templates, write_document
-from ..block.summary import WIDTH
 from ..block.wording import with_words
 from ..output.progress import Advance, progress_bar
 from ..output.staged_folder import staged_folder
+from ..output.terminal import WIDTH
 from ..output.timestamp import now
 
 BLOCK_TOML = "block.toml"

@@ -25,11 +25,11 @@ from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
 from ..adjustment.wording import mistaken, not_determined, with_words
 from ..adjustment.words import words_in
-from ..block.report import write_pages
-from ..block.summary import WIDTH
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
+from ..output.terminal import WIDTH
 from ..output.timestamp import now
+from ..pages.writing import write_pages
 from .command_line import written
 
 
