@@ -17,6 +17,8 @@ from posstats.contract.choices import JudgedOrientation
 from posstats.contract.results import ModelParallax, Regression, Results
 from posstats.contract.survey import ImagePlace
 from posstats.errors import PosstatsError
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
+from posstats.statistics.holm import holm
 
 ORIENTATIONS: tuple[JudgedOrientation, ...] = get_args(JudgedOrientation)
 """What can be assessed; without a choice the first that the results hold. The order is that of
@@ -174,7 +176,7 @@ def _parallax(models: Sequence[ModelParallax], orientation: JudgedOrientation) -
 
 def _remaining_drift(results: Results, orientation: JudgedOrientation) -> float:
     if orientation == "pos":
-        tested = [("ground", angle, "block") for angle in ("omega", "phi", "kappa")]
+        tested = [("ground", angle, "block") for angle in ANGLE_NAMES]
     elif orientation == "selected":
         tested = [
             (row.frame, row.angle, row.scope) for row in results.selection if row.form != "linear"
@@ -185,7 +187,7 @@ def _remaining_drift(results: Results, orientation: JudgedOrientation) -> float:
     p = [_drift_p(fits[each]) for each in tested if each in fits]
     if len(p) < len(tested) or any(np.isnan(p)):
         return float("nan")
-    return min(1.0, len(p) * min(p)) if p else 1.0
+    return min((each for each in holm(p) if each is not None), default=1.0)
 
 
 def _drift_p(fit: Regression) -> float:

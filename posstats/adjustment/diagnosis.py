@@ -15,8 +15,9 @@ from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.screening import contradicting_rays, without_rays
 from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, Orientations
-from posstats.errors import ConvergenceError, GeometryError
-from posstats.formats.block_toml import RADIANS_PER_UNIT, AngleUnit, FileAngleSystem
+from posstats.contract.notice import Notice
+from posstats.errors import ConvergenceError, GeometryError, PosstatsError
+from posstats.formats.block_toml import RADIANS_PER_UNIT, FileAngleSystem
 from posstats.formats.block_writing import source_of
 from posstats.formats.convention import Convention
 from posstats.numerics.bundle import adjust
@@ -26,7 +27,14 @@ GROSS = 10.0
 """sigma0 from which mistakes are tried out: no random error is off by so much."""
 _CURED = 0.2  # of sigma0: what is left by the right convention
 _SYSTEMS: tuple[FileAngleSystem, ...] = get_args(FileAngleSystem)
-_UNITS: dict[AngleUnit, str] = {"deg": "degrees", "rad": "radians", "gon": "gon"}
+
+
+class MistakenDataError(PosstatsError):
+    """Measurements that contradict each other because of the `mistake`."""
+
+    def __init__(self, mistake: Notice) -> None:
+        self.mistake = mistake
+        super().__init__(f"the measurements contradict each other: {mistake.code}")
 
 
 def likely_mistake(
@@ -34,8 +42,8 @@ def likely_mistake(
     parameters: tuple[CommonParameter, ...],
     control: Bools,
     sigma0: float,
-) -> str | None:
-    """The first mistake in words that, undone, brings sigma0 down to a fifth; None without.
+) -> Notice | None:
+    """The first mistake that, undone, brings sigma0 down to a fifth; None without.
 
     Parameters
     ----------
@@ -48,7 +56,8 @@ def likely_mistake(
     """
     limit = min(_CURED * sigma0, GROSS)
     return next(
-        (w for w, other in _undone(block) if _sigma0(other, parameters, control) < limit), None
+        (said for said, other in _undone(block) if _sigma0(other, parameters, control) < limit),
+        None,
     )
 
 
@@ -62,30 +71,27 @@ def _sigma0(block: Block, parameters: tuple[CommonParameter, ...], control: Bool
         return float("inf")
 
 
-def _undone(block: Block) -> Iterator[tuple[str, Block]]:
+def _undone(block: Block) -> Iterator[tuple[Notice, Block]]:
     """The block without each of the usual mistakes."""
-    for words, orientations in _angles_read_otherwise(block):
-        yield words, replace(block, orientations=orientations)
+    for said, orientations in _angles_read_otherwise(block):
+        yield said, replace(block, orientations=orientations)
     pos = block.orientations
     pos = replace(pos, position_m=_exchanged(pos.position_m))
-    yield "x and y of the POS positions are exchanged", replace(block, orientations=pos)
+    yield Notice(code="mistaken_pos_axes"), replace(block, orientations=pos)
     ties = block.tie_points
-    for words, xy in (
-        ("x and y of the image coordinates are exchanged", ties.xy_px[:, ::-1] * [-1.0, -1.0]),
-        ("x of the image coordinates has the wrong sign", ties.xy_px * [-1.0, 1.0]),
-        ("y of the image coordinates has the wrong sign", ties.xy_px * [1.0, -1.0]),
+    for said, xy in (
+        (Notice(code="mistaken_image_axes"), ties.xy_px[:, ::-1] * [-1.0, -1.0]),
+        (Notice(code="mistaken_image_x"), ties.xy_px * [-1.0, 1.0]),
+        (Notice(code="mistaken_image_y"), ties.xy_px * [1.0, -1.0]),
     ):
-        yield words, replace(block, tie_points=replace(ties, xy_px=np.ascontiguousarray(xy)))
+        yield said, replace(block, tie_points=replace(ties, xy_px=np.ascontiguousarray(xy)))
     surveyed = block.ground_points
     if surveyed is not None:
         turned = replace(surveyed, position_m=_exchanged(surveyed.position_m))
-        yield (
-            "x and y of the ground points are exchanged",
-            replace(block, ground_points=turned),
-        )
+        yield Notice(code="mistaken_ground_axes"), replace(block, ground_points=turned)
 
 
-def _angles_read_otherwise(block: Block) -> Iterator[tuple[str, Orientations]]:
+def _angles_read_otherwise(block: Block) -> Iterator[tuple[Notice, Orientations]]:
     """The numbers of the file taken for another system, another unit, or in another order.
 
     They are those of the file, not the block's angles: these are within half a turn.
@@ -95,29 +101,35 @@ def _angles_read_otherwise(block: Block) -> Iterator[tuple[str, Orientations]]:
     columns = list(source.angle_columns)
     angles = source.table[columns].to_numpy(dtype=float)[source.row]
     read = stated.ground_from_image(position, angles)
-    for words, convention, order in _conventions(stated, columns):
+    for said, convention, order in _conventions(stated, columns):
         rotation = convention.ground_from_image(position, angles[:, order])
         # what was taken off since then (a calibration) stays off
         rotation = rotation @ np.swapaxes(read, -1, -2) @ block.orientations.ground_from_image
-        yield words, _turned(block.orientations, rotation, convention)
+        yield said, _turned(block.orientations, rotation, convention)
 
 
 def _conventions(
     stated: Convention, columns: Sequence[str]
-) -> Iterator[tuple[str, Convention, list[int]]]:
-    """Words, convention and order of the columns of every other way to read angles."""
+) -> Iterator[tuple[Notice, Convention, list[int]]]:
+    """Mistake, convention and order of the columns of every other way to read angles."""
     in_order = [0, 1, 2]
     for angles in _SYSTEMS:
         # roll, pitch and heading refer to true north, which no one knows without a crs
         if angles != stated.angles and (stated.frame.crs or angles != "roll-pitch-heading"):
-            words = f"the angles are {angles}, not {stated.angles} (block.angles)"
-            yield words, replace(stated, angles=angles), in_order
+            read = {"angles": angles, "stated": stated.angles}
+            yield (
+                Notice(code="mistaken_angles", values=read),
+                replace(stated, angles=angles),
+                in_order,
+            )
     unit = {radians: name for name, radians in RADIANS_PER_UNIT.items()}[stated.unit_rad]
     for other, unit_rad in RADIANS_PER_UNIT.items():
         if other != unit:
-            words = f"the angles are in {_UNITS[other]}, not in {_UNITS[unit]} (block.angle_unit)"
-            yield words, replace(stated, unit_rad=unit_rad), in_order
-    yield f"{columns[0]} and {columns[1]} are exchanged", stated, [1, 0, 2]
+            units = {"angle_unit": other, "stated_unit": unit}
+            said = Notice(code="mistaken_angle_unit", values=units)
+            yield said, replace(stated, unit_rad=unit_rad), in_order
+    exchanged = Notice(code="mistaken_columns", values={"one": columns[0], "other": columns[1]})
+    yield exchanged, stated, [1, 0, 2]
 
 
 def _turned(pos: Orientations, rotation: Floats, convention: Convention) -> Orientations:

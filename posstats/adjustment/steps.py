@@ -17,7 +17,7 @@ from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
 from posstats.adjustment.check_points import intersect_apart
 from posstats.adjustment.control import chosen_control
-from posstats.adjustment.diagnosis import GROSS, likely_mistake
+from posstats.adjustment.diagnosis import GROSS, MistakenDataError, likely_mistake
 from posstats.adjustment.parameter_choice import Dropped, select_parameters
 from posstats.adjustment.priors import with_fitting_priors
 from posstats.adjustment.screening import (
@@ -42,7 +42,7 @@ from posstats.arrays import Bools, Floats
 from posstats.block.model import Block, GroundPoints, Orientations
 from posstats.contract.adjustment import Undetermined
 from posstats.contract.choices import ControlChoice
-from posstats.errors import ConvergenceError, GeometryError, PosstatsError, UndeterminedError
+from posstats.errors import ConvergenceError, GeometryError, UndeterminedError
 from posstats.geometry.ground.check_points import (
     CheckPointResiduals,
     check_point_residuals,
@@ -152,8 +152,9 @@ def adjust_block(
     Raises
     ------
     PosstatsError
-        If control points cannot be chosen, the block is not determined, or measurements
-        contradict each other because of a mistake that can be named.
+        If control points cannot be chosen, or the block is not determined.
+    MistakenDataError
+        If measurements contradict each other because of a mistake that can be named.
     ConvergenceError
         If the adjustment does not settle.
     """
@@ -193,7 +194,7 @@ def adjust_block(
         mistake = likely_mistake(tied, parameters, control, np.inf)
         if mistake is None:
             raise
-        raise PosstatsError(f"the measurements contradict each other: {mistake}") from error
+        raise MistakenDataError(mistake) from error
     report("check points", 0.8)
     return _result(block, settings, stated, rejected, problem, adjusted, snooping, dropped, weights)
 
@@ -260,7 +261,7 @@ def _refuse_mistakes(tied: Block, stated: BundleProblem, control: Bools, sigma0:
         return
     mistake = likely_mistake(tied, stated.parameters, control, sigma0)
     if mistake is not None:
-        raise PosstatsError(f"the measurements contradict each other: {mistake}")
+        raise MistakenDataError(mistake)
 
 
 def _result(

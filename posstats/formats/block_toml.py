@@ -14,6 +14,7 @@ from posstats.errors import GeometryError
 from posstats.formats.hints import nearest
 from posstats.formats.toml_document import Conflict, TomlDocument, open_toml
 from posstats.formats.toml_types import ONE_OR_MORE, Number, Positive
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 
 FILE = "block.toml"
 FileAngleSystem = Literal["omega-phi-kappa", "phi-omega-kappa", "roll-pitch-heading"]
@@ -223,7 +224,7 @@ class BlockSettings:
         """Names of the angle columns, in the order in which angles are kept."""
         if self.angles == "roll-pitch-heading":
             return ("roll", "pitch", "heading")
-        return ("omega", "phi", "kappa")
+        return ANGLE_NAMES
 
 
 def parse_settings(content: bytes, folder_name: str, findings: list[str]) -> BlockSettings | None:

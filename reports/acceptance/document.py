@@ -4,7 +4,7 @@ from posstats.contract.acceptance import Acceptance
 from posstats.contract.results import Results
 
 from ..block.view import strips_with_models
-from ..document.numbering import ReportDocument, numbered
+from ..document.numbering import ReportDocument, assembled
 from ..figures import style
 from ..typefaces import cjk
 from . import words as wording
@@ -45,8 +45,7 @@ def build(acceptance: Acceptance, results: Results, unshown: str = "") -> Report
     material = Material(words, acceptance, results, unshown)
     with style.style(_families(acceptance, results)):
         parts = [topic(material) for topic in TOPICS]
-    _, sections = numbered((), parts)
-    return ReportDocument(**vars(front(words, acceptance)), sections=sections)
+    return assembled(front(words, acceptance), (), parts)
 
 
 def _families(acceptance: Acceptance, results: Results) -> tuple[str, ...]:

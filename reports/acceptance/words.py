@@ -47,10 +47,7 @@ class Words(document.Words):
     def listed(self, names: Sequence[str], most: int | None = None) -> str:
         """Names in the middle of a sentence: without capitals, no more of them than wanted."""
         small = [n[:1].lower() + n[1:] if n[1:2].islower() else n for n in names]
-        if most is None or len(small) <= most:
-            return self.joined(small)
-        more = self.text("list.more", n=fmt.count(len(small) - most))
-        return self.joined([*small[:most], more])
+        return self.first(small, len(small) if most is None else most, sentence=True)
 
 
 def words_of(acceptance: Acceptance) -> Words:

@@ -4,8 +4,8 @@ from posstats.contract.adjustment import AdjustmentResults
 from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 
 from ..document.content import known
-from ..document.front import Verdict
-from ..document.numbering import ReportDocument, numbered
+from ..document.front import Front, Verdict
+from ..document.numbering import ReportDocument, assembled
 from ..figures import style
 from ..typefaces import cjk
 from . import (
@@ -50,11 +50,14 @@ def build(results: AdjustmentResults, language: Language = DEFAULT_LANGUAGE) -> 
     """
     words = words_in(language)
     with style.style(_families(words)):
-        opening, sections = numbered(
-            known(plan.figure(words, results)), [topic(words, results) for topic in TOPICS]
-        )
-    return ReportDocument(
-        language=language,
+        opening = known(plan.figure(words, results))
+        parts = [topic(words, results) for topic in TOPICS]
+    return assembled(_front(words, results), opening, parts)
+
+
+def _front(words: Words, results: AdjustmentResults) -> Front:
+    return Front(
+        language=words.catalogue.language,
         title=words.text("bundle_document.title"),
         subject=results.block.name,
         subtitle=subtitle(words, results),
@@ -63,8 +66,6 @@ def build(results: AdjustmentResults, language: Language = DEFAULT_LANGUAGE) -> 
         version=results.posstats_version,
         verdict=Verdict(paragraph(words, results)),
         key_figures=key_figures(words, results),
-        opening=opening,
-        sections=sections,
     )
 
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from posstats.contract.adjustment import AdjustmentResults, Undetermined
 
-from ..document import format as fmt
 from ..document.content import Bullets, Content, Paragraph, Part, filled
 from ..document.table import Table, prose_column
 from .words import Words
@@ -59,8 +58,4 @@ def _subject(words: Words, same: Sequence[Undetermined]) -> str:
             return parameters
         strips = words.joined(scopes)
         return words.counted("open.of_strips", len(scopes), parameters=parameters, strips=strips)
-    listed = words.text("list.between").join(names[:SHOWN_NAMES])
-    n_more = len(names) - SHOWN_NAMES
-    if n_more <= 0:
-        return listed
-    return words.joined([listed, words.text("list.more", n=fmt.count(n_more))])
+    return words.first(names, SHOWN_NAMES)

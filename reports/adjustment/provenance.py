@@ -6,7 +6,7 @@ from posstats.contract.adjustment import AdjustmentRequest, AdjustmentResults
 
 from ..document import format as fmt
 from ..document.content import Part, filled
-from ..document.table import Table, text_column
+from ..document.table import Table, pairs
 from .words import Words
 
 Pair = tuple[str, str]
@@ -33,13 +33,9 @@ def topic(words: Words, results: AdjustmentResults) -> Part:
     return Part("provenance", words.text("provenance.title"), filled(tables))
 
 
-def _table(words: Words, name: str, titles: Pair, pairs: Iterable[Pair]) -> Table:
-    listed = list(pairs)
-    columns = (
-        text_column(words.text(titles[0]), [key for key, _ in listed]),
-        text_column(words.text(titles[1]), [value for _, value in listed]),
-    )
-    return Table(name, words.text(f"provenance.{name}"), columns)
+def _table(words: Words, name: str, titles: Pair, items: Iterable[Pair]) -> Table:
+    heads = (words.text(titles[0]), words.text(titles[1]))
+    return pairs(name, words.text(f"provenance.{name}"), heads, items)
 
 
 def _settings(words: Words, results: AdjustmentResults) -> list[Pair]:

@@ -1,15 +1,15 @@
-"""The English sentences of ``adjustment.json``; what is said of a block that is not determined."""
+"""The English sentences of ``adjustment.json``, and of a block that cannot be adjusted."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from posstats.adjustment.defects import Defect
+from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.contract.adjustment import AdjustmentResults
 from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
 
-from ..document import format as fmt
 from .words import Words, words_in
 
 _SHOWN = 6
@@ -38,6 +38,12 @@ def not_determined(error: UndeterminedBlockError, language: Language = DEFAULT_L
     return words.sentences(_not_determined(words, error))
 
 
+def mistaken(error: MistakenDataError, language: Language = DEFAULT_LANGUAGE) -> str:
+    """The mistake because of which measurements contradict each other."""
+    words = words_in(language)
+    return words.text("defect.mistaken", mistake=words.notice(error.mistake))
+
+
 def _not_determined(words: Words, error: UndeterminedBlockError) -> Iterator[str]:
     for defect in error.defects:
         reason, remedy = words.notice(defect.reason), words.notice(defect.remedy)
@@ -51,10 +57,12 @@ def _not_determined(words: Words, error: UndeterminedBlockError) -> Iterator[str
 def _subject(words: Words, defect: Defect) -> str:
     if defect.parameters:
         called = [_called(words, each) for each in defect.parameters]
-        return words.counted("defect.parameters", len(called), names=_listed(words, called))
+        return words.counted(
+            "defect.parameters", len(called), names=words.first(called, _SHOWN, sentence=True)
+        )
     if not defect.images:
         return words.text("defect.all_images")
-    names = _listed(words, defect.images)
+    names = words.first(defect.images, _SHOWN, sentence=True)
     return words.counted("defect.images", len(defect.images), names=names)
 
 
@@ -62,11 +70,3 @@ def _called(words: Words, parameter: CommonParameter) -> str:
     if parameter.scope == BLOCK:
         return parameter.name
     return words.text("defect.of_scope", name=parameter.name, scope=parameter.scope)
-
-
-def _listed(words: Words, names: Sequence[str]) -> str:
-    """Names, no more of them than can be read."""
-    shown = list(names[:_SHOWN])
-    if len(names) > _SHOWN:
-        shown.append(words.text("list.more", n=fmt.count(len(names) - _SHOWN)))
-    return words.joined(shown)

@@ -1,6 +1,5 @@
 """The words of the report on an adjustment."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from posstats.contract.adjustment import AdditionalParameter, Element
@@ -50,18 +49,17 @@ class Words(document.Words):
         return fmt.with_unit(unit.scaled(parameter.value), unit.name)
 
     def _written(self, said: Notice, name: str, plain: bool) -> str:
-        """A value of a notice; control points are counted, groups of observations named."""
+        """A value of a notice; control points are counted, groups and units are named."""
         value = said.values[name]
         if name == "n_control" and isinstance(value, int):
             return self.counted("control.count", value) if value else self.text("control.no")
         if name == "groups" and isinstance(value, tuple):
-            return self._row(self.of("weight", str(group)) for group in value)
+            return self._row([self.of("weight", str(group)) for group in value])
+        if name in ("angle_unit", "stated_unit"):
+            return self.of("angle_unit", str(value))
         if name == "parameters" and isinstance(value, tuple):
-            return self._row(map(str, value))
+            return self._row([str(each) for each in value])
         return super()._written(said, name, plain)
-
-    def _row(self, names: Iterable[str]) -> str:
-        return self.text("list.between").join(names)
 
 
 def words_in(language: str) -> Words:

@@ -1,6 +1,7 @@
 """Topic: parallax after the correction of the POS angles."""
 
 from posstats.contract.results import Results
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 
 from ..document.content import Content, Paragraph, Part, filled, known
 from ..document.drawing import Drawing
@@ -9,10 +10,10 @@ from ..document.table import Table
 from ..figures import style
 from .bar_figures import bar_figure, corrections
 from .strip_table import strip_table
-from .view import GROUND_ANGLES, strips_with_models
+from .view import strips_with_models
 from .words import BlockReport, Words
 
-CORRECTED = (*GROUND_ANGLES, "selected")
+CORRECTED = (*ANGLE_NAMES, "selected")
 
 
 def topic(report: BlockReport) -> Part:

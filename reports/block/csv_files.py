@@ -6,8 +6,7 @@ from pathlib import Path
 
 from posstats.contract.files import as_values
 from posstats.contract.results import Results
-
-from .view import CAMERA_ANGLES
+from posstats.numerics.kernels.rotation import CAMERA_ANGLE_NAMES
 
 CSV_TABLES = (
     "images",
@@ -63,7 +62,7 @@ def _write_csv(records: Sequence[Mapping[str, object]], path: Path) -> Path:
 
 def _is_known(name: str, records: Sequence[Mapping[str, object]]) -> bool:
     """Whether a column is written: angles of a frame that nobody asked for are not."""
-    asked_for = not name.removeprefix("sigma_").startswith(CAMERA_ANGLES)
+    asked_for = not name.removeprefix("sigma_").startswith(CAMERA_ANGLE_NAMES)
     return asked_for or any(record[name] is not None for record in records)
 
 

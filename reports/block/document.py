@@ -5,7 +5,7 @@ from posstats.contract.results import Results
 
 from ..document.content import known
 from ..document.drawing import Drawing
-from ..document.numbering import NumberedFigure, ReportDocument, numbered
+from ..document.numbering import NumberedFigure, ReportDocument, assembled
 from ..figures import style
 from ..typefaces import cjk
 from . import (
@@ -58,8 +58,7 @@ def build(results: Results, language: Language = DEFAULT_LANGUAGE) -> ReportDocu
     with style.style(_families(report)):
         plan = block_plan(report.words, results)
         parts = [part for topic in TOPICS if (part := topic(report))]
-    opening, sections = numbered(known(plan), parts)
-    return ReportDocument(**vars(front(report)), opening=opening, sections=sections)
+    return assembled(front(report), known(plan), parts)
 
 
 def drawings(document: ReportDocument) -> list[Drawing]:

@@ -60,8 +60,4 @@ def table(words: Words, scopes: Sequence[Observability]) -> Table:
 
 
 def _listed(words: Words, images: Sequence[str]) -> str:
-    listed = words.text("list.between").join(images[:SHOWN_IMAGES])
-    n_more = len(images) - SHOWN_IMAGES
-    if n_more <= 0:
-        return listed or fmt.MISSING
-    return words.joined([listed, words.text("list.more", n=fmt.count(n_more))])
+    return words.first(images, SHOWN_IMAGES) or fmt.MISSING

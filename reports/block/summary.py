@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from posstats.contract.results import Results
 
 from ..document.rows import rows
+from ..output.terminal import WIDTH
 from . import verdict
 from .view import decided_by_strip
 from .words import BlockReport, words_in
 
-WIDTH = 88
 SHOWN_STRIPS = 12
 
 

@@ -4,12 +4,11 @@ from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from posstats.contract.results import ImageAngleErrors, Results
+from posstats.numerics.kernels.rotation import ANGLE_NAMES, CAMERA_ANGLE_NAMES
 
 from ..document import format as fmt
 
-GROUND_ANGLES = ("omega", "phi", "kappa")
-CAMERA_ANGLES = ("pitch", "roll", "yaw")
-HELD = ("angles", "omega", "phi", "kappa", "none")  # in the order of showing
+HELD = ("angles", *ANGLE_NAMES, "none")  # in the order of showing
 
 
 class StripMean(Protocol):
@@ -95,4 +94,4 @@ def decided_by_strip(results: Results) -> bool:
 
 def angles(frame: str) -> tuple[str, str, str]:
     """Names of the three angles in a frame."""
-    return CAMERA_ANGLES if frame == "camera" else GROUND_ANGLES
+    return CAMERA_ANGLE_NAMES if frame == "camera" else ANGLE_NAMES

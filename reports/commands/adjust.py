@@ -8,6 +8,7 @@ from typing import cast, get_args
 from posstats.adjustment import Adjustment, adjust_block
 from posstats.adjustment.calibration import calibrated
 from posstats.adjustment.control import read_ids
+from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.steps import Progress
 from posstats.adjustment.undetermined import UndeterminedBlockError
@@ -28,13 +29,13 @@ from posstats.settings import AdjustmentSettings
 
 from ..adjustment import document as adjustment_document
 from ..adjustment import verdict as adjustment_verdict
-from ..adjustment.wording import not_determined, with_words
+from ..adjustment.wording import mistaken, not_determined, with_words
 from ..adjustment.words import words_in
-from ..block.report import write_pages
-from ..block.summary import WIDTH
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
+from ..output.terminal import WIDTH
 from ..output.timestamp import now
+from ..pages.writing import write_pages
 from .command_line import written
 
 
@@ -68,12 +69,15 @@ def adjusted(
     Raises
     ------
     PosstatsError
-        If there is none: what is not determined, why, and what would help, in words.
+        If there is none: what is not determined, why, and what would help, or which mistake
+        makes the measurements contradict each other, in words.
     """
     try:
         return adjust_block(block, settings, progress=progress)
     except UndeterminedBlockError as error:
         raise PosstatsError(not_determined(error, language)) from error
+    except MistakenDataError as error:
+        raise PosstatsError(mistaken(error, language)) from error
 
 
 def adjust_folder(

@@ -15,9 +15,9 @@ from posstats.settings import AdjustmentSettings
 from ..adjustment import verdict as adjustment_verdict
 from ..adjustment.wording import with_words
 from ..adjustment.words import words_in
-from ..block.summary import WIDTH
 from ..document import format as fmt
 from ..output.progress import progress_bar
+from ..output.terminal import WIDTH
 from .adjust import adjusted
 
 

@@ -7,9 +7,9 @@ from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.contract.files import to_json
 from posstats.papers.drift.reproduction import Reproduction, reproduction
 
-from ..block.report import write_pages
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
+from ..pages.writing import write_pages
 from ..papers.conclusion import summary
 from ..papers.drift.conclusions import conclusions
 from ..papers.drift.document import build

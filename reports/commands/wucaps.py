@@ -9,10 +9,10 @@ from posstats.papers.wucaps.experiment import SituationRun, run_situation
 from posstats.papers.wucaps.reproduction import Reproduction, reproduction
 from posstats.papers.wucaps.situations import SITUATIONS, Situation
 
-from ..block.report import write_pages
 from ..output.progress import progress_bar
 from ..output.staged_folder import staged_folder
 from ..output.timestamp import now
+from ..pages.writing import write_pages
 from ..papers.conclusion import summary
 from ..papers.wucaps.conclusions import beyond, conclusions
 from ..papers.wucaps.document import build

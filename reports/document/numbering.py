@@ -1,7 +1,7 @@
 """What templates see: a frozen document of numbered sections, tables and figures."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 from .content import Bullets, Content, Labelled, Paragraph, Part
@@ -74,18 +74,26 @@ class ReportDocument(Front):
         return shortened(self.subject, int(LONG_SUBJECT / max(wide, 1.0)))
 
 
-def numbered(
-    opening: Iterable[Content], parts: Iterable[Part]
-) -> tuple[tuple[Item, ...], tuple[Section, ...]]:
-    """Number sections, and tables and figures in the order of reading.
+def assembled(front: Front, opening: Iterable[Content], parts: Iterable[Part]) -> ReportDocument:
+    """Put a document together, its tables and figures numbered in the order of reading.
 
     Parameters
     ----------
+    front
+        The first page.
     opening
         What stands before the contents.
     parts
         The sections.
     """
+    first_page, sections = _numbered(opening, parts)
+    given = {each.name: getattr(front, each.name) for each in fields(front)}
+    return ReportDocument(**given, opening=first_page, sections=sections)
+
+
+def _numbered(
+    opening: Iterable[Content], parts: Iterable[Part]
+) -> tuple[tuple[Item, ...], tuple[Section, ...]]:
     numbering = _Numbering()
     return numbering.items(opening), tuple(
         Section(part.id, number, part.title, numbering.items(part.content))

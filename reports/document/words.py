@@ -1,6 +1,6 @@
 """The words of one document: messages of its catalogue with the document's own values."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -42,6 +42,15 @@ class Words:
     def joined(self, words: Iterable[str]) -> str:
         """An enumeration: ``a, b and c``."""
         return self.catalogue.joined(words)
+
+    def first(self, names: Sequence[str], most: int, *, sentence: bool = False) -> str:
+        """The first names in a row, and how many there are besides.
+
+        In a `sentence` they are enumerated where all are shown: ``a, b and c``.
+        """
+        if sentence and len(names) <= most:
+            return self.joined(names)
+        return self._row(names[:most], len(names) - most)
 
     def sentences(self, said: Iterable[str]) -> str:
         """Sentences in a row; empty ones are left out."""
@@ -85,7 +94,10 @@ class Words:
         """Texts in a row; if they are the first few of ``n``, how many there are besides."""
         shown = [str(each) for each in texts]
         n = said.values.get("n")
-        hidden = n - len(shown) if isinstance(n, int) else 0
+        return self._row(shown, n - len(shown) if isinstance(n, int) else 0, plain=plain)
+
+    def _row(self, shown: Sequence[str], hidden: int = 0, *, plain: bool = False) -> str:
+        """Texts one after the other, and how many are hidden."""
         if hidden <= 0:
             return self.text("list.between").join(shown)
         more = str(hidden) if plain else fmt.count(hidden)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from posstats.version import __version__
 
 from ..document.content import Content, Part
-from ..document.front import Verdict
+from ..document.front import Front, Verdict
 from ..document.key_figure import KeyFigure
-from ..document.numbering import ReportDocument, numbered
+from ..document.numbering import ReportDocument, assembled
 from .words import Words
 
 
@@ -35,8 +35,7 @@ def made(
     created
         ISO 8601 time stamp.
     """
-    first_page, sections = numbered([opening], topics)
-    return ReportDocument(
+    first_page = Front(
         language=words.catalogue.language,
         title=words.text("front.title"),
         subject=words.text("front.subject"),
@@ -46,6 +45,5 @@ def made(
         version=__version__,
         verdict=Verdict(front.verdict),
         key_figures=front.key_figures,
-        opening=first_page,
-        sections=sections,
     )
+    return assembled(first_page, [opening], topics)

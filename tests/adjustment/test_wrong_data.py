@@ -13,12 +13,14 @@ from posstats import read_block
 from posstats.adjustment import AdjustmentSettings, adjust_block
 from posstats.adjustment.axes import images_with_wrong_axes
 from posstats.adjustment.block_problem import bundle_problem
+from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.results import adjustment_results
 from posstats.adjustment.snooping import Blunder
 from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import write_block
 from posstats.reports.adjustment.verdict import paragraph
+from posstats.reports.adjustment.wording import mistaken
 from posstats.reports.adjustment.words import words_in
 
 OPK, RPH = "omega-phi-kappa", "roll-pitch-heading"
@@ -150,37 +152,39 @@ def _flight_in_image(block, image):
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("change", "code"),
     [
         (lambda b: replace(b, tie_points=replace(b.tie_points, xy_px=b.tie_points.xy_px * [-1, 1])),
-         "x of .*wrong sign"),
+         "mistaken_image_x"),
     ],
 )  # fmt: skip
-def test_a_mistake_in_all_images_is_named(block, change, message):
-    with pytest.raises(PosstatsError, match=message):
+def test_a_mistake_in_all_images_is_named(block, change, code):
+    with pytest.raises(MistakenDataError, match=code):
         adjust_block(change(block), AdjustmentSettings(control="corners"))
 
 
 @pytest.mark.parametrize(
-    ("true", "stated", "message"),
+    ("true", "stated", "found"),
     [
-        (("gon", OPK), ("deg", OPK), "in gon, not"),
-        (("deg", OPK), ("gon", OPK), "in degrees, not"),
-        (("rad", OPK), ("deg", OPK), "in radians, not"),
-        (("deg", OPK), ("deg", RPH), "omega-phi-kappa, not roll-pitch-heading"),
-        (("deg", RPH), ("deg", OPK), "roll-pitch-heading, not omega-phi-kappa"),
-        (("deg", "pitch-roll-heading"), ("deg", RPH), "roll and pitch"),
+        (("gon", OPK), ("deg", OPK), {"angle_unit": "gon", "stated_unit": "deg"}),
+        (("deg", OPK), ("gon", OPK), {"angle_unit": "deg", "stated_unit": "gon"}),
+        (("rad", OPK), ("deg", OPK), {"angle_unit": "rad", "stated_unit": "deg"}),
+        (("deg", OPK), ("deg", RPH), {"angles": OPK, "stated": RPH}),
+        (("deg", RPH), ("deg", OPK), {"angles": RPH, "stated": OPK}),
+        (("deg", "pitch-roll-heading"), ("deg", RPH), {"one": "roll", "other": "pitch"}),
     ],
 )
-def test_angles_of_a_file_that_are_no_such_angles_are_named(tmp_path, true, stated, message):
+def test_angles_of_a_file_that_are_no_such_angles_are_named(tmp_path, true, stated, found):
     block = small_block(
         block={"crs": "EPSG:32631", "origin_m": [520_000.0, 4_800_000.0]},
         flight={"n_strips": 3, "images_per_strip": 5, "tilt_rad": 0.05},
         tie_points={"per_model": 30},
     )
     rewritten(block, tmp_path, true, stated)
-    with pytest.raises(PosstatsError, match=message):
+    with pytest.raises(MistakenDataError) as caught:
         adjust_block(read_block(tmp_path), AdjustmentSettings(control="all"))
+    assert caught.value.mistake.values == found
+    assert words_in("en").notice(caught.value.mistake) in mistaken(caught.value)
 
 
 def rewritten(block, folder, true, stated):
@@ -234,23 +238,23 @@ def test_an_observation_that_the_block_needs_is_said_to_be_doubtful(tiny):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "words"),
+    ("spoil", "code"),
     [
         (lambda b: replace(b, orientations=replace(b.orientations, system="phi-omega-kappa")),
-         "omega-phi-kappa, not phi-omega-kappa"),
+         "mistaken_angles"),
         (lambda b: b.with_angles(b.orientations.angles_rad[:, [1, 0, 2]]),
-         "omega and phi"),
+         "mistaken_columns"),
         (lambda b: replace(b, orientations=replace(
             b.orientations, position_m=b.orientations.position_m[:, [1, 0, 2]].copy())),
-         "x and y .*POS"),
+         "mistaken_pos_axes"),
         (lambda b: replace(b, tie_points=replace(
             b.tie_points, xy_px=b.tie_points.xy_px * [1.0, -1.0])),
-         "y of .*wrong sign"),
+         "mistaken_image_y"),
         (lambda b: replace(b, ground_points=replace(
             b.ground_points, position_m=b.ground_points.position_m[:, [1, 0, 2]].copy())),
-         "x and y .*ground"),
+         "mistaken_ground_axes"),
     ],
 )  # fmt: skip
-def test_a_wrong_convention_is_named(tiny, spoil, words):
-    with pytest.raises(PosstatsError, match=words):
+def test_a_wrong_convention_is_named(tiny, spoil, code):
+    with pytest.raises(MistakenDataError, match=code):
         adjust_block(spoil(tiny), AdjustmentSettings(control="all"))

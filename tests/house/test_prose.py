@@ -12,7 +12,7 @@ FOUR_WORDS = re.compile(r"([A-Za-z][a-z']*[,;:]? +({}[,;:]? +)*){3}[A-Za-z]")
 NOT_SPOKEN = {"about", "compile", "Meta", "append", "refuse"}
 """Calls whose texts no page shows: what a field holds, patterns, and what is collected for the
 message of an exception."""
-READERS = re.compile(r"formats/|acceptance/(profile|formula)|synthetic/scenario|/diagnosis")
+READERS = re.compile(r"formats/|acceptance/(profile|formula)|synthetic/scenario")
 """Modules that judge what users write: all that they say is the message of an exception."""
 NO_PAGE = re.compile(r"# |.*found .*expected ")
 """Comments of files that are written, findings for the message of an exception."""

@@ -26,6 +26,7 @@ from posstats.geometry.stereo.pair_adjustment import (
 from posstats.geometry.stereo.pair_blunders import weigh_pairs
 from posstats.numerics.kernels.coplanarity import base_frames
 from posstats.numerics.kernels.rotation import (
+    ANGLE_NAMES,
     AngleSystem,
     angles_from_rotation,
     rotation_from_angles,
@@ -45,7 +46,7 @@ _UNSOLVABLE = (
 )
 _STATE = ("omega1", "phi1", "kappa1", "omega2", "phi2", "kappa2", "BY", "BZ")
 _HELD = {"dependent": (), "angles": ("omega2", "phi2", "kappa2")} | {
-    angle: (f"{angle}2",) for angle in ("omega", "phi", "kappa")
+    angle: (f"{angle}2",) for angle in ANGLE_NAMES
 }
 _STATUS = {
     CONVERGED: "ok",

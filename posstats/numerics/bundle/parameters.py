@@ -8,14 +8,14 @@ import numpy as np
 from posstats.arrays import Bools, Floats, Ids, Ints
 from posstats.errors import GeometryError
 from posstats.numerics.bundle.rays import CAMERA_PARAMETERS
+from posstats.numerics.kernels.rotation import ANGLE_NAMES
 
 BLOCK = "block"
 GNSS_SHIFTS, GNSS_DRIFTS = (
     tuple(f"gnss_{axis}_{kind}" for axis in "xyz") for kind in ("shift", "drift")
 )
 IMU_SHIFTS, IMU_DRIFTS = (
-    tuple(f"imu_{angle}_{kind}" for angle in ("omega", "phi", "kappa"))
-    for kind in ("shift", "drift")
+    tuple(f"imu_{angle}_{kind}" for angle in ANGLE_NAMES) for kind in ("shift", "drift")
 )
 LEVER_ARM = ("lever_arm_u", "lever_arm_v", "lever_arm_w")
 BORESIGHT = ("boresight_roll", "boresight_pitch", "boresight_yaw")

@@ -16,9 +16,9 @@ from posstats.papers.drift.areas import AREAS, TrueCauses, run_area, true_causes
 from ...block.csv_files import write_tables
 from ...block.document import build, drawings
 from ...block.folder import write_analysis
-from ...block.report import write_figures
 from ...document.drawing import Drawing
 from ...output.progress import progress_bar
+from ...pages.writing import write_figures
 from .figures import draw_area
 from .words import words_in
 
