@@ -13,17 +13,23 @@ from click.testing import CliRunner
 from needed import chinese_typeface
 from small_scenario import small_block
 
+from posstats.analysis.results import results
+from posstats.analysis.steps import analyse
 from posstats.contract.acceptance import ChosenStatement, JudgedRequirement
-from posstats.formats.block_folder import write_block
+from posstats.contract.files import to_json
+from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.acceptance import writing
 from posstats.reports.acceptance.data import _filled
 from posstats.reports.acceptance.units import Lengths, margin
 from posstats.reports.archive.writing import render_archive
+from posstats.reports.block.wording import with_words
+from posstats.reports.commands import accept as accept_command
 from posstats.reports.commands.accept import length_m
 from posstats.reports.commands.cli import cli
 from posstats.reports.document import format as fmt
 from posstats.reports.document.format import METRE, MINUS
 from posstats.reports.verification import pages
+from posstats.settings import Settings
 
 # One worker makes the documents of this file.
 pytestmark = pytest.mark.xdist_group("accept")
@@ -76,9 +82,10 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def analysed(folder) -> Path:
-    out = folder.parent / "report"
-    assert run("analyse", folder, "--out", out, "--errors", "bundle", "--no-pdf").exit_code == 0
-    return out / "results.json"
+    analysis = analyse(read_block(folder), Settings(errors="bundle"))
+    path = folder.parent / "results.json"
+    path.write_text(to_json(with_words(results(analysis))), encoding="utf-8")
+    return path
 
 
 @pytest.fixture(scope="module")
@@ -179,6 +186,12 @@ def test_the_same_inputs_make_the_same_bytes(folder, analysed, accepted, tmp_pat
     assert values_in(accepted)["created"].startswith("2026-05-28")
 
 
+def data_alone(acceptance, results, templates, files, folder, *, pdf):
+    """`write_document` without the pages."""
+    (folder / "acceptance.json").write_text(to_json(acceptance), encoding="utf-8")
+    return ""
+
+
 @pytest.mark.parametrize(
     ("options", "code", "verdict"),
     [
@@ -192,7 +205,8 @@ def test_the_same_inputs_make_the_same_bytes(folder, analysed, accepted, tmp_pat
         (["--profile", "asprs-2024", "--class", "1.5m", "--orientation", "pos"], 3, "rejected"),
     ],
 )
-def test_the_exit_code_is_the_verdict(analysed, tmp_path, options, code, verdict):
+def test_the_exit_code_is_the_verdict(monkeypatch, analysed, tmp_path, options, code, verdict):
+    monkeypatch.setattr(accept_command, "write_document", data_alone)
     done = run("accept", analysed, *options, "--out", tmp_path, "--no-pdf")
     assert done.exit_code == code, done.output
     assert values_in(tmp_path)["verdict"] == verdict
