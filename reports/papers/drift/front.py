@@ -7,12 +7,19 @@ from posstats.papers.drift.reproduction import Reproduction
 from ...document import format as fmt
 from ...document.key_figure import KeyFigure
 from ..conclusion import how_many
+from ..document import PaperFront
 from .repeated import n_seeds
 from .report import Report
 from .words import Words
 
 
-def subtitle(words: Words, run: Reproduction) -> str:
+def front(words: Words, report: Report) -> PaperFront:
+    """What was simulated, what was found, in numbers."""
+    run = report.run
+    return PaperFront(_subtitle(words, run), _verdict(words, report), _key_figures(words, run))
+
+
+def _subtitle(words: Words, run: Reproduction) -> str:
     """What was simulated."""
     blocks = [results.block for results in run.results.values()]
     return words.text(
@@ -24,7 +31,7 @@ def subtitle(words: Words, run: Reproduction) -> str:
     )
 
 
-def verdict(words: Words, report: Report) -> str:
+def _verdict(words: Words, report: Report) -> str:
     """What was found, in short."""
     run = report.run
     means = words.joined(
@@ -37,7 +44,7 @@ def verdict(words: Words, report: Report) -> str:
     return words.text("front.verdict", held=held, means=means, seed=seed, total=n_seeds())
 
 
-def key_figures(words: Words, run: Reproduction) -> tuple[KeyFigure, ...]:
+def _key_figures(words: Words, run: Reproduction) -> tuple[KeyFigure, ...]:
     """Parallaxes of area 1, and the line of omega over its first strip."""
     keyed = {(e.table, e.area, e.strip, e.angle, e.quantity): e for e in run.compared}
     line = keyed[3, TABLE3_AREA, STRIP, "omega", "r_squared"]

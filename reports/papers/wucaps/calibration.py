@@ -34,7 +34,7 @@ def table(words: Words, run: Reproduction) -> Table:
     errors = [(f - t) / s for f, t, s in zip(found, true, sigma, strict=True)]
     columns = (
         text_column(
-            words.text("boresight.situation"),
+            words.text("wucaps_column.situation"),
             [words.situation(s) if k == 0 else "" for s, k, _ in lines],
         ),
         text_column(

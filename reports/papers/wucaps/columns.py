@@ -19,8 +19,8 @@ def names(words: Words, rows: Sequence[Row]) -> tuple[Column, Column]:
         for row in rows
     ]  # fmt: skip
     return (
-        text_column(words.text("orientations.method"), methods),
-        text_column(words.text("orientations.control"), controls),
+        text_column(words.text("wucaps_column.method"), methods),
+        text_column(words.text("wucaps_column.control"), controls),
     )
 
 

@@ -1,10 +1,8 @@
 """The document of the report on the second paper: its front and its topics in order."""
 
-from posstats.version import __version__
-
-from ...document.front import Verdict
-from ...document.numbering import ReportDocument, numbered
+from ...document.numbering import ReportDocument
 from ..conclusion import in_short
+from ..document import made
 from . import (
     calibration,
     check_points,
@@ -15,7 +13,7 @@ from . import (
     repeated,
     situations,
 )
-from .front import key_figures, subtitle, verdict
+from .front import front
 from .report import Report
 from .words import Words
 
@@ -43,19 +41,10 @@ def build(words: Words, report: Report, created: str) -> ReportDocument:
     created
         ISO 8601 time stamp.
     """
-    opening, sections = numbered(
-        [in_short(words, report.conclusions)], [topic(words, report) for topic in TOPICS]
-    )
-    return ReportDocument(
-        language=words.catalogue.language,
-        title=words.text("front.title"),
-        subject=words.text("front.subject"),
-        subtitle=subtitle(words, report.run),
-        mark=words.text("mark.simulated"),
-        created=created.partition("T")[0],
-        version=__version__,
-        verdict=Verdict(verdict(words, report)),
-        key_figures=key_figures(words, report.run),
-        opening=opening,
-        sections=sections,
+    return made(
+        words,
+        front(words, report),
+        in_short(words, report.conclusions),
+        [topic(words, report) for topic in TOPICS],
+        created,
     )

@@ -7,12 +7,19 @@ from posstats.papers.wucaps.situations import Situation
 from ...document import format as fmt
 from ...document.key_figure import KeyFigure
 from ..conclusion import how_many
+from ..document import PaperFront
 from .repeated import n_seeds
 from .report import Report
 from .words import Words
 
 
-def subtitle(words: Words, run: Reproduction) -> str:
+def front(words: Words, report: Report) -> PaperFront:
+    """What was simulated, what was found, in numbers."""
+    run = report.run
+    return PaperFront(_subtitle(words, run), _verdict(words, report), _key_figures(words, run))
+
+
+def _subtitle(words: Words, run: Reproduction) -> str:
     """What was simulated."""
     flights = [each.flights.flight for each in run.runs.values()]
     return words.text(
@@ -23,7 +30,7 @@ def subtitle(words: Words, run: Reproduction) -> str:
     )
 
 
-def verdict(words: Words, report: Report) -> str:
+def _verdict(words: Words, report: Report) -> str:
     """What was found, in short."""
     run = report.run
     ratios = words.joined(_ratios(words, *each) for each in run.findings.items())
@@ -47,12 +54,12 @@ def _ratios(words: Words, situation: Situation, found: SituationFindings) -> str
     )
 
 
-def key_figures(words: Words, run: Reproduction) -> tuple[KeyFigure, ...]:
+def _key_figures(words: Words, run: Reproduction) -> tuple[KeyFigure, ...]:
     """Accuracies of the calibrated POS and of the adjustment, by situation."""
-    return tuple(figure for each in run.findings.items() for figure in _key_figures(words, *each))
+    return tuple(figure for each in run.findings.items() for figure in _of_situation(words, *each))
 
 
-def _key_figures(
+def _of_situation(
     words: Words, situation: Situation, found: SituationFindings
 ) -> tuple[KeyFigure, KeyFigure]:
     terrain = words.of("terrain_title", situation)

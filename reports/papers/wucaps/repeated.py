@@ -82,10 +82,10 @@ def predictions(words: Words, run: Reproduction) -> Table:
     lines = [(situation, name) for situation in run.runs for name in named]
     columns = [
         text_column(
-            words.text("boresight.situation"),
+            words.text("wucaps_column.situation"),
             [words.situation(s) if name == "weighted_none" else "" for s, name in lines],
         ),
-        text_column(words.text("orientations.control"), [named[name] for _, name in lines]),
+        text_column(words.text("wucaps_column.control"), [named[name] for _, name in lines]),
     ]
     for side in SIDES:
         rmse = [pooled(f"{name}_{side}_m", s) for s, name in lines]

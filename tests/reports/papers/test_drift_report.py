@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from page_reading import assert_shown_without_fault, pdf_pages, plain, read
 
 from posstats.block.image_pairs import stereo_models
@@ -23,9 +22,6 @@ from posstats.papers.drift.findings import AreaFindings, find
 from posstats.papers.drift.published import published
 from posstats.papers.drift.seeds import repeated
 from posstats.reports.commands import paper as paper_command
-from posstats.reports.commands import wucaps as wucaps_command
-from posstats.reports.commands.cli import cli
-from posstats.reports.output.staged_folder import staged_folder
 from posstats.reports.papers.drift import figures as paper_figures
 from posstats.reports.papers.drift import running
 from posstats.reports.papers.drift.words import words_in
@@ -277,67 +273,13 @@ def test_a_killed_area_is_an_error_that_says_so(monkeypatch, tmp_path):
         running.run_areas(tmp_path, 1, "", "en")
 
 
-@pytest.mark.parametrize(
-    ("options", "seed", "language", "pdf"),
-    [([], 1, "en", True), (["--seed", "7", "--language", "zh", "--no-pdf"], 7, "zh", False)],
-)
-@pytest.mark.parametrize(
-    ("name", "command"), [("paper", paper_command), ("wucaps", wucaps_command)]
-)
-def test_the_commands_hand_on_seed_language_and_pdf(
-    monkeypatch, tmp_path, name, command, options, seed, language, pdf
-):
-    called = {}
-
-    def record(out, seed, *, language, pdf):
-        called.update(out=out, seed=seed, language=language, pdf=pdf)
-        return ["written"]
-
-    monkeypatch.setattr(command, f"reproduce_{name}", record)
-    run = CliRunner().invoke(cli, [name, "--out", str(tmp_path), *options])
-    assert run.output == "written\n"
-    assert called == {"out": tmp_path, "seed": seed, "language": language, "pdf": pdf}
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["paper", "--seed", "-1"], "-1 is not in"),
-        (["paper", "--out", ""], "is empty"),
-        (["simulate", "--out", "x"], "exactly one"),
-        (["simulate", "--out", "x", "--area", "1", "--scenario", "area1"], "exactly one"),
-        (["simulate", "--out", "x", "--area", "4"], "4 is not in"),
-    ],
-)
-def test_wrong_options_are_refused(options, message):
-    run = CliRunner().invoke(cli, options)
-    assert run.exit_code == 2
-    assert message in run.output
-
-
-def test_a_file_above_the_output_folder_is_refused_before_the_work(tmp_path):
-    (tmp_path / "file").write_text("")
-    with (
-        pytest.raises(PosstatsError, match="is a file"),
-        staged_folder(tmp_path / "file" / "sub"),
-    ):
-        pytest.fail("the work began")
-
-
-def test_an_outdated_pdf_does_not_stay_beside_a_new_page(tmp_path):
-    for name in ("paper.pdf", "mine.pdf"):
-        (tmp_path / name).write_text("old")
-    with staged_folder(tmp_path, replaced=("paper.pdf",)) as stage:
-        (stage / "paper.html").write_text("new")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.pdf", "paper.html"]
-
-
 HELD = """
 import os, signal, sys
 from posstats.reports.commands.cli import main
 from posstats.reports.papers.drift import running
 
 told = int(sys.argv.pop(1))
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
 
 def wait(*_):
     os.write(told, b".")
