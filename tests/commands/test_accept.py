@@ -31,9 +31,6 @@ from posstats.reports.document.format import METRE, MINUS
 from posstats.reports.verification import pages
 from posstats.settings import Settings
 
-# One worker makes the documents of this file.
-pytestmark = pytest.mark.xdist_group("accept")
-
 EPOCH = "1780000000"
 SAID = OF["en", "verification"]
 CONTRACT = """
