@@ -22,7 +22,7 @@ test: $(READY) lint types  ## Run all checks and tests
 	@.ci/debian-packages --pango
 	@.ci/debian-packages --browser
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/support/compile_kernels.py
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -q -n 2 --dist loadgroup
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -q -n 2 --dist loadfile
 
 .PHONY: lint
 lint: $(READY)  ## Check style

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from posstats.contract.acceptance import Acceptance
 
-from ..block.summary import WIDTH
+from ..output.terminal import WIDTH
 from .words import Words, words_of
 
 _INDENT = 14
