@@ -17,7 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from posstats.analysis.results import results
 from posstats.papers.drift.areas import AREAS, area_scenario, run_area, true_causes
 from posstats.papers.drift.findings import CRITERIA, AreaFindings, find
-from posstats.papers.drift.seeds import write
+from posstats.papers.seeds import write
 
 STORED = Path(__file__).parents[1] / "posstats" / "papers" / "drift" / "seeds.csv"
 

@@ -17,10 +17,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from posstats.papers.seeds import write
 from posstats.papers.wucaps.adjustments import CONTROLS
 from posstats.papers.wucaps.experiment import run_situation
 from posstats.papers.wucaps.findings import CRITERIA, SituationFindings, find
-from posstats.papers.wucaps.seeds import write
 from posstats.papers.wucaps.situations import SITUATIONS, Situation
 
 STORED = Path(__file__).parents[1] / "posstats" / "papers" / "wucaps" / "seeds.csv"

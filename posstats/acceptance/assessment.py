@@ -147,7 +147,7 @@ def _finding(requirement: Requirement, question: Question) -> Finding:
         if requirement.threshold is not None:
             threshold = requirement.threshold.evaluate(product)
     except MissingProductValue as missing:
-        reason = Reason("product value missing", {"name": missing.name})
+        reason = Reason(code="product value missing", values={"name": missing.name})
         return Finding(requirement, "not assessed", reason)
     try:
         found = find(requirement.quantity, Question(question.evidence, product, threshold))
@@ -167,7 +167,7 @@ def _judged(
     return Finding(
         requirement=requirement,
         judgement=judgement,
-        reason=Reason(code, {"found": found.value, "limit": limit}),
+        reason=Reason(code=code, values={"found": found.value, "limit": limit}),
         found=found.value,
         limit=limit,
         threshold=threshold,

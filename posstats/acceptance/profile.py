@@ -5,14 +5,12 @@ from dataclasses import dataclass, field, fields
 
 from posstats.acceptance.formula import Formula, FormulaError, MissingProductValue
 from posstats.acceptance.product import Product
-from posstats.acceptance.profile_values import Date, Text
 from posstats.acceptance.quantity_names import QUANTITIES, Quantity
-from posstats.contract.acceptance import Exceeding, StatedComponent
+from posstats.contract.acceptance import Exceeding, Parties, StatedComponent
 from posstats.contract.choices import TerrainKind
 
 __all__ = [
     "Contract",
-    "Parties",
     "Product",
     "Profile",
     "ProfileFile",
@@ -128,23 +126,7 @@ class ProfileFile:
         return hashlib.sha256(self.content).hexdigest()
 
 
-@dataclass(frozen=True)
-class Parties:
-    """Who delivers what to whom, as ``[contract]`` says it; "" where it does not."""
-
-    number: Text = ""
-    title: Text = ""
-    client: Text = ""
-    contractor: Text = ""
-    inspector: Text = ""
-    flight: Text = ""
-    flight_date: Date = ""
-    sensor: Text = ""
-    place: Text = ""
-    remarks: Text = ""
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Contract(Parties):
     """A contract file: the parties, and in `product` what it states of the product."""
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from posstats.acceptance.formula import Formula, FormulaError, limit_formula
 from posstats.acceptance.product import Product
-from posstats.acceptance.profile import Contract, Parties, Profile, Requirement, Statement
+from posstats.acceptance.profile import Contract, Profile, Requirement, Statement
 from posstats.acceptance.profile_reading import ALWAYS, ANY_TERRAIN, FileContent, TableOfFile
 from posstats.acceptance.profile_values import alternatives
 from posstats.acceptance.quantity_names import COUNTED_BEYOND, QUANTITIES
@@ -45,11 +45,11 @@ def merged(contents: Sequence[FileContent]) -> tuple[Profile | None, Contract]:
         _refuse_emptiness(state, contents[0])
     if any(content.findings for content in contents):
         return None, Contract()
-    product, parties = Product(), Parties()
+    product, contract = Product(), Contract()
     for content in base_first:
         product = product.updated(Product(**content.product.values))
-        parties = replace(parties, **content.contract.values)
-    contract = Contract(**vars(parties), product=product)
+        contract = replace(contract, **content.contract.values)
+    contract = replace(contract, product=product)
     return (_profile(state, contents) if state.requirements else None), contract
 
 

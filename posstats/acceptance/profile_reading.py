@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from posstats.acceptance.product import GIVEN_NAMES, Product
-from posstats.acceptance.profile import Parties, ProfileFile
+from posstats.acceptance.profile import ProfileFile
 from posstats.acceptance.profile_values import (
+    Date,
     FilledText,
     Id,
     Ids,
@@ -64,6 +65,22 @@ class StatementTable:
 
 
 @dataclass(frozen=True)
+class ContractTable:
+    """``[contract]``: the values of `Parties`, as types that refuse what no page could show."""
+
+    number: Text = ""
+    title: Text = ""
+    client: Text = ""
+    contractor: Text = ""
+    inspector: Text = ""
+    flight: Text = ""
+    flight_date: Date = ""
+    sensor: Text = ""
+    place: Text = ""
+    remarks: Text = ""
+
+
+@dataclass(frozen=True)
 class ProfileTable:
     """A whole file; None: the file does not give it, or not rightly."""
 
@@ -76,7 +93,7 @@ class ProfileTable:
     needs: Needs | None = None
     scales: Scales | None = None
     omit: Ids | None = None
-    contract: Parties = field(default_factory=Parties)
+    contract: ContractTable = field(default_factory=ContractTable)
     product: Product = field(default_factory=Product)
     requirement: Annotated[
         tuple[RequirementTable, ...],

@@ -55,7 +55,7 @@ class Question:
             Without check points.
         """
         if len(self.evidence) == 0:
-            raise Unavailable(Reason("no check points"))
+            raise Unavailable(Reason(code="no check points"))
         return self.evidence.difference_m[:, COMPONENTS[component]]
 
     def lengths(self, component: str) -> Floats:
@@ -78,7 +78,7 @@ class Question:
         if component in ("v", "3d"):
             squares += self.evidence.survey_v_m**2
         if np.isnan(squares).any():
-            raise Unavailable(Reason("survey accuracy not stated"))
+            raise Unavailable(Reason(code="survey accuracy not stated"))
         return float(np.sqrt(squares.mean()))
 
 
@@ -92,7 +92,9 @@ def rmse(question: Question, component: str) -> RmseInterval:
     """
     differences = question.differences(component)
     if len(differences) < MIN_POINTS:
-        raise Unavailable(Reason("too few points", {"n": len(differences), "needed": MIN_POINTS}))
+        raise Unavailable(
+            Reason(code="too few points", values={"n": len(differences), "needed": MIN_POINTS})
+        )
     return rmse_interval(differences)
 
 
@@ -123,7 +125,7 @@ def _accuracy_h_95(question: Question) -> Found:
     x, y = (rmse(question, component).rmse or 0.0 for component in "xy")
     found = nssda_accuracy_h(x, y)
     if found.value is None:
-        raise Unavailable(Reason("nssda ratio", {"ratio": found.ratio}))
+        raise Unavailable(Reason(code="nssda ratio", values={"ratio": found.ratio}))
     return Found(found.value)
 
 
@@ -178,7 +180,7 @@ def _survey(component: str) -> Callable[[Question], Found]:
 
 def _measured_share(question: Question) -> Found:
     if question.evidence.n_given == 0:
-        raise Unavailable(Reason("no check points"))
+        raise Unavailable(Reason(code="no check points"))
     return Found(len(question.evidence) / question.evidence.n_given)
 
 
@@ -205,7 +207,7 @@ def _largest_value(values: Floats) -> float:
 
 def _sample_size(question: Question) -> Found:
     if question.product.sample_size is None:
-        raise Unavailable(Reason("product value missing", {"name": "sample_size"}))
+        raise Unavailable(Reason(code="product value missing", values={"name": "sample_size"}))
     return Found(float(question.product.sample_size))
 
 
@@ -246,5 +248,5 @@ def find(name: str, question: Question) -> Found:
     found = FINDERS[name](question)
     if np.isnan(found.value):
         values = {"quantity": name, "orientation": question.evidence.orientation}
-        raise Unavailable(Reason("quantity not available", values))
+        raise Unavailable(Reason(code="quantity not available", values=values))
     return found

@@ -15,7 +15,6 @@ from posstats.acceptance.accuracy_statement import (
 from posstats.acceptance.assessment import Assessment, Finding
 from posstats.acceptance.evidence import Evidence
 from posstats.acceptance.profile import Contract, Profile
-from posstats.acceptance.reasons import Reason
 from posstats.arrays import Floats
 from posstats.contract.acceptance import (
     Acceptance,
@@ -55,7 +54,7 @@ class Occasion:
     Attributes
     ----------
     orientation_reason
-        Why this orientation was assessed.
+        Why this orientation was assessed: its name, or `asked`.
     contract
         Parties and subject.
     language
@@ -66,7 +65,7 @@ class Occasion:
         Of the bytes of results.json.
     """
 
-    orientation_reason: Reason
+    orientation_reason: Notice
     contract: Contract
     language: Language
     created: str
@@ -86,7 +85,6 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
     evidence = assessment.evidence
     parties = asdict(occasion.contract)
     del parties["product"]
-    reason = occasion.orientation_reason
     return Acceptance(
         posstats_version=__version__,
         versions=versions(),
@@ -94,7 +92,7 @@ def acceptance_values(assessment: Assessment, results: Results, occasion: Occasi
         language=occasion.language,
         verdict=assessment.verdict,
         orientation=evidence.orientation,
-        orientation_reason=Notice(code=reason.code, values=reason.values),
+        orientation_reason=occasion.orientation_reason,
         profile=_profile(assessment.profile),
         product=record(StatedProduct, asdict(assessment.product)),
         contract=record(Parties, parties),

@@ -12,7 +12,6 @@ from posstats.acceptance.evidence import best_orientation, evidence
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile, ProfileFile
 from posstats.acceptance.profile_files import profile_of_files
-from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values, document_id
 from posstats.contract.acceptance import (
     Acceptance,
@@ -20,6 +19,7 @@ from posstats.contract.acceptance import (
     ChosenStatement,
 )
 from posstats.contract.choices import JudgedOrientation, Language
+from posstats.contract.notice import Notice
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
@@ -96,7 +96,7 @@ def assembled(
     by_name = {each.name: _sha256(each.content) for each in files}
     orientation = demand.orientation or best_orientation(results)
     occasion = Occasion(
-        orientation_reason=Reason("asked" if demand.orientation else orientation),
+        orientation_reason=Notice(code="asked" if demand.orientation else orientation),
         contract=demand.contract,
         language=demand.language,
         created=created,
@@ -135,7 +135,7 @@ def reassess(
     product = Product(**asdict(stated.product))
     demand = Demand(profile, contract, product, stated.orientation, stated.language)
     occasion = Occasion(
-        orientation_reason=Reason(stated.orientation_reason.code),
+        orientation_reason=Notice(code=stated.orientation_reason.code),
         contract=contract,
         language=stated.language,
         created=stated.created,

@@ -13,9 +13,9 @@ from posstats.acceptance.evidence import evidence
 from posstats.acceptance.formula import Formula
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile, Requirement
-from posstats.acceptance.reasons import Reason
 from posstats.acceptance.values import Occasion, acceptance_values
 from posstats.contract.files import as_values
+from posstats.contract.notice import Notice
 from posstats.statistics.percentiles import sample_percentile
 
 SURVEY_XY_M, SURVEY_Z_M = 0.02, 0.05
@@ -49,7 +49,7 @@ def assessment():
 
 @pytest.fixture(scope="module")
 def values(assessment):
-    occasion = Occasion(Reason("asked"), Contract(), "en", "2026-01-05", "0" * 64)
+    occasion = Occasion(Notice(code="asked"), Contract(), "en", "2026-01-05", "0" * 64)
     return as_values(acceptance_values(*assessment, occasion))
 
 
@@ -119,6 +119,6 @@ def test_a_height_that_is_a_length_in_plan_is_no_blunder_there():
         requirement("n_blunders_h", "3", "0.4"), requirement("n_blunders_v", "3", "0.6"),
     ))  # fmt: skip
     assessed = assess(evidence(results, "selected", Product()), profile, Product())
-    occasion = Occasion(Reason("asked"), Contract(), "en", "2026-01-05", "0" * 64)
+    occasion = Occasion(Notice(code="asked"), Contract(), "en", "2026-01-05", "0" * 64)
     found = acceptance_values(assessed, results, occasion).check_points
     assert [row.blunder for row in found] == [False, True, False]

@@ -29,6 +29,7 @@ FLOORS = {
     "posstats.acceptance": 7,
     "posstats.synthetic": 7,
     "posstats.analysis": 8,
+    "posstats.papers": 8,
     "posstats.papers.drift": 9,
     "posstats.papers.wucaps": 9,
     "posstats.reports.document": 10,

@@ -20,7 +20,8 @@ from posstats.papers.drift.published import (
     published,
     recomputed,
 )
-from posstats.papers.drift.seeds import repeated, share, share_interval, write
+from posstats.papers.drift.seeds import repeated, share, share_interval
+from posstats.papers.seeds import write
 from posstats.synthetic import simulate
 from posstats.synthetic.scenario import AngleError
 

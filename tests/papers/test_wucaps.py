@@ -14,6 +14,7 @@ from small_scenario import small_block
 from posstats.block.image_pairs import stereo_models
 from posstats.numerics.bundle.parameters import BORESIGHT
 from posstats.numerics.kernels.rotation import vector_from_rotation, wrapped
+from posstats.papers.seeds import write
 from posstats.papers.wucaps.adjustments import (
     CONTROLS,
     adjusted_block,
@@ -22,7 +23,7 @@ from posstats.papers.wucaps.adjustments import (
 )
 from posstats.papers.wucaps.findings import CRITERIA, LESS, RECOMMENDED, SituationFindings
 from posstats.papers.wucaps.measures import measured
-from posstats.papers.wucaps.seeds import pooled, repeated, share, write
+from posstats.papers.wucaps.seeds import pooled, repeated, share
 from posstats.papers.wucaps.situations import (
     SITUATIONS,
     flight_seed,

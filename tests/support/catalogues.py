@@ -17,7 +17,7 @@ OF = {
 }
 NUMBERS = sorted((ROOT / "posstats").rglob("*.py"))
 REPORTS = sorted((ROOT / "reports").rglob("*.py"))
-SAYING = {"Notice": "code", "listing": 0, "ImpossibleFitError": 1, "Reason": 0}
+SAYING = {"Notice": "code", "listing": 0, "ImpossibleFitError": 1, "Reason": "code"}
 """Calls below the reports that say something, and the argument that is its code."""
 
 
