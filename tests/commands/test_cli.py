@@ -190,6 +190,11 @@ def opened_for_writing(pipe: Path, running: subprocess.Popen) -> int:
     return pytest.fail(running.communicate()[1])
 
 
+def interruptible() -> None:
+    """A job in the background inherits that SIGINT is ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_leaves_nothing_behind(block_folder, tmp_path, number):
     """While the block is read, from a pipe in place of a table, the folder for output is there."""
@@ -202,6 +207,7 @@ def test_an_interrupt_leaves_nothing_behind(block_folder, tmp_path, number):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=interruptible,  # noqa: PLW1509 - no threads here
     )
     end = opened_for_writing(pipe, running)
     assert list(tmp_path.glob(".posstats-*"))
