@@ -75,7 +75,10 @@ def rmse_coverage(case: Case, n: int, n_trials: int, seed: int) -> tuple[float, 
 
 
 def alternatives(case: Case, n: int, n_trials: int, seed: int) -> tuple[float, float]:
-    """Coverage with plain estimates, and with unbiased ones but no widening (posstats.rmse)."""
+    """Coverage with plain estimates, and with unbiased ones but no widening.
+
+    `posstats.statistics.rmse` has both.
+    """
     draws = case.draw(np.random.default_rng(seed), n_trials, n)
     f, k = n - 1, draws.shape[2]
     mean = draws.mean(axis=1)

@@ -15,7 +15,6 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from posstats.analysis.results import results
-from posstats.contract.files import as_values
 from posstats.papers.drift.areas import AREAS, area_scenario, run_area, true_causes
 from posstats.papers.drift.findings import CRITERIA, AreaFindings, find
 from posstats.papers.seeds import write
@@ -44,8 +43,8 @@ def main() -> None:
 def _find(run: tuple[int, int]) -> AreaFindings:
     seed, area = run
     analysis = run_area(area, seed)
-    found = as_values(results(analysis))
-    return find(area, found, area_scenario(area), true_causes(analysis.block, analysis.models))
+    causes = true_causes(analysis.block, analysis.models)
+    return find(area, results(analysis), area_scenario(area), causes)
 
 
 def _failed(found: AreaFindings) -> str:

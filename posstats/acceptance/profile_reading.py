@@ -1,7 +1,7 @@
 """One profile or contract file: its keys read and checked, before files are put together."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
@@ -103,13 +103,6 @@ class ProfileTable:
         tuple[StatementTable, ...],
         Meta(max_length=_MAX_TABLES, description="tables that begin with [[statement]]"),
     ] = ()
-
-
-TOP_KEYS = tuple(each.name for each in fields(ProfileTable))
-REQUIREMENT_KEYS = tuple(each.name for each in fields(RequirementTable))
-STATEMENT_KEYS = tuple(each.name for each in fields(StatementTable))
-CONTRACT_KEYS = tuple(each.name for each in fields(ContractTable))
-PRODUCT_KEYS = tuple(each.name for each in fields(Product))
 
 
 @dataclass(frozen=True)

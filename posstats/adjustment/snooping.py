@@ -66,8 +66,6 @@ class Snooping:
         or one that it is tied to, is a blunder. None: it did not end so.
     complete
         No observation is left with a |w| above the critical value.
-    critical_value
-        Of |w|.
     problem, result
         Without the blunders, and its adjustment; control points that are none are missing.
     """
@@ -75,7 +73,6 @@ class Snooping:
     blunders: tuple[Blunder, ...]
     held: Blunder | None
     complete: bool
-    critical_value: float
     problem: BundleProblem
     result: AdjustedBundle
 
@@ -126,7 +123,6 @@ def snoop(
         tuple(_named(problem, result, suspect) for suspect in out),
         None if held is None else _named(problem, result, held),
         not suspects,
-        critical,
         kept,
         result,
     )

@@ -36,8 +36,6 @@ class EstimatedWeights:
     kept
         Groups that have observations and keep their weight: of too little redundancy to
         estimate it, or without residuals.
-    n_rounds
-        Times that weights were changed.
     converged
         Every factor of the other groups is within `SETTLED` of 1.
     """
@@ -46,7 +44,6 @@ class EstimatedWeights:
     result: AdjustedBundle
     factor: Mapping[str, float]
     kept: tuple[str, ...]
-    n_rounds: int
     converged: bool
 
 
@@ -95,7 +92,7 @@ def estimate_weights(problem: BundleProblem) -> EstimatedWeights:
         problem = rescaled(problem, change)
         result = adjust(problem)
     kept = tuple(n for n in GROUPS if n not in factor and result.groups[n].n > 0)
-    return EstimatedWeights(problem, result, total, kept, n_rounds, converged)
+    return EstimatedWeights(problem, result, total, kept, converged)
 
 
 def _estimable(result: AdjustedBundle) -> dict[str, float]:

@@ -33,7 +33,10 @@ DEFAULT_SCOPE: Scope = "block"
 DEFAULT_ERRORS: AngleErrorSource = "coplanarity"
 DEFAULT_FRAME: FrameChoice = "ground"
 DEFAULT_DRIFT: DriftScope = "block"
+DEFAULT_CALIBRATION_DRIFT: Scope = "strip"
+"""Of the flight that calibrates: its own shifts are kept out of the boresight."""
 DEFAULT_SELF_CALIBRATION: SelfCalibration = "none"
 DEFAULT_ROBUST = True
+DEFAULT_LANGUAGE: Language = "en"
 PAPER_SEED = 1
 """Of the simulations that repeat a paper's experiment."""

@@ -98,9 +98,9 @@ def generalised_least_squares(
     The degrees of freedom are Satterthwaite's, 2 v^2 / Var(v), with v the variance of the
     coefficient and Var(v) from the REML information of the components in it. A component
     estimated at zero counts as absent: keeping its few degrees of freedom there makes 95 %
-    intervals cover 99.9 % when the component is really zero (`posstats.reml.WORTHWHILE` says
-    what this rule covers). The covariance has Kenward and Roger's inflation for weights that are
-    themselves estimated.
+    intervals cover 99.9 % when the component is really zero
+    (`posstats.statistics.reml.WORTHWHILE` says what this rule covers). The covariance has Kenward
+    and Roger's inflation for weights that are themselves estimated.
     """
     components = variance_components(y, design, known, strips)
     white, strip = (float(variance) for variance in components.variance)

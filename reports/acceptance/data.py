@@ -161,18 +161,18 @@ def _assembled(
         requirements=tuple(
             replace(row, reason=acceptance_words.reason(words, row)) for row in values.requirements
         ),
-        statement=statement(assessment),
+        statement=statement(words, assessment),
         attachments=listed,
     )
     return replace(worded, document_id=document_id(worded))
 
 
-def statement(assessment: Assessment) -> str:
+def statement(words: acceptance_words.Words, assessment: Assessment) -> str:
     """The standard's own wording with its numbers, or empty where it has none to say."""
-    return " ".join(_filled(each) for each in assessment.statements)
+    return words.sentences(_filled(words, each) for each in assessment.statements)
 
 
-def _filled(chosen: ChosenStatement) -> str:
+def _filled(words: acceptance_words.Words, chosen: ChosenStatement) -> str:
     class_m, found_m = chosen.class_m, chosen.found_m
     digits = _honest_digits(found_m, class_m)
     text = chosen.template.format(
@@ -182,7 +182,7 @@ def _filled(chosen: ChosenStatement) -> str:
         found_cm="" if found_m is None else fmt.number(100.0 * found_m, digits),
         n_points=fmt.count(chosen.n_points),
     )
-    return text if text.endswith((".", "。")) else f"{text}."
+    return text if text.endswith((".", "。")) else text + words.text("sentence.end")
 
 
 def _honest_digits(found_m: float | None, class_m: float | None) -> int:

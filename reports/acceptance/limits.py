@@ -65,7 +65,7 @@ def _limits(material: Material) -> Iterator[str]:
     yield from _of_requirements(words, acceptance)
     yield from _of_tests(words, acceptance.accuracy)
     if material.unshown:
-        yield words.text("limits.characters", characters=_code_points(material.unshown))
+        yield words.text("limits.characters", characters=_code_points(words, material.unshown))
 
 
 def _of_points(words: Words, accuracy: Accuracy) -> Iterator[str]:
@@ -91,7 +91,7 @@ def _of_tests(words: Words, accuracy: Accuracy) -> Iterator[str]:
         yield words.text("limits.normality")
 
 
-def _code_points(letters: str) -> str:
+def _code_points(words: Words, letters: str) -> str:
     named = [f"U+{ord(letter):04X}" for letter in letters]
     more = " …" if len(named) > NAMED_CHARACTERS else ""
-    return ", ".join(named[:NAMED_CHARACTERS]) + more
+    return words.text("list.between").join(named[:NAMED_CHARACTERS]) + more

@@ -111,7 +111,7 @@ def _regressions(results: Results) -> list[Regression]:
     by_strip = decided_by_strip(results)
     return [
         row for row in results.regression
-        if not row.reason and (row.scope == "block" or by_strip)
+        if not (row.notice or row.reason) and (row.scope == "block" or by_strip)
     ][:SHOWN_DECISIONS]  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """The document of the report on an adjustment: its front and its topics in order."""
 
 from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 
 from ..document.content import known
 from ..document.front import Front, Verdict
@@ -32,7 +33,7 @@ TOPICS = (
 )
 
 
-def build(results: AdjustmentResults, language: str = "en") -> ReportDocument:
+def build(results: AdjustmentResults, language: Language = DEFAULT_LANGUAGE) -> ReportDocument:
     """Make the document.
 
     Parameters

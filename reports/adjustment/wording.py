@@ -7,6 +7,7 @@ from posstats.adjustment.defects import Defect
 from posstats.adjustment.diagnosis import MistakenDataError
 from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.contract.adjustment import AdjustmentResults
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.numerics.bundle.parameters import BLOCK, CommonParameter
 
 from .words import Words, words_in
@@ -31,15 +32,15 @@ def with_words(results: AdjustmentResults) -> AdjustmentResults:
     )
 
 
-def not_determined(error: UndeterminedBlockError) -> str:
-    """What is open, why, and what would help, in English."""
-    words = words_in("en")
+def not_determined(error: UndeterminedBlockError, language: Language = DEFAULT_LANGUAGE) -> str:
+    """What is open, why, and what would help."""
+    words = words_in(language)
     return words.sentences(_not_determined(words, error))
 
 
-def mistaken(error: MistakenDataError) -> str:
-    """The mistake because of which measurements contradict each other, in English."""
-    words = words_in("en")
+def mistaken(error: MistakenDataError, language: Language = DEFAULT_LANGUAGE) -> str:
+    """The mistake because of which measurements contradict each other."""
+    words = words_in(language)
     return words.text("defect.mistaken", mistake=words.notice(error.mistake))
 
 

@@ -43,7 +43,7 @@ def table(words: Words, summary: Sequence[AngleErrorSummary]) -> Table:
         "column.median_sigma": [row.median_sigma_rad for row in summary],
     }
     columns = [
-        text_column(words.text("column.angle"), [row.angle for row in summary]),
+        text_column(words.text("column.angle"), [words.angle(row.angle) for row in summary]),
         text_column(words.text("column.frame"), [words.of("frame", row.frame) for row in summary]),
         count_column(words.text("column.images"), [row.n for row in summary]),
         *(

@@ -49,8 +49,8 @@ def figure(words: Words, results: Results) -> Drawing | None:
     picture = bar_figure(bars, strips_with_models(results), "px", names)
     chosen = results.verdict.corrected_angles
     which = (
-        words.text("corrected_parallax.selected", angles=words.joined(chosen)) if chosen
-        else words.text("corrected_parallax.none_selected")
+        words.text("corrected_parallax.selected", angles=words.joined(map(words.angle, chosen)))
+        if chosen else words.text("corrected_parallax.none_selected")
     )  # fmt: skip
     caption = words.sentences([words.text("corrected_parallax.figure"), which])
     title = words.text("corrected_parallax.figure_title")

@@ -52,7 +52,7 @@ def table(words: Words, results: Results) -> Table:
     chosen = [row for row in results.selection if row.correct or not by_strip]
     shown = chosen[:SHOWN_DECISIONS]
     columns = (
-        text_column(words.text("column.angle"), [row.angle for row in shown]),
+        text_column(words.text("column.angle"), [words.angle(row.angle) for row in shown]),
         text_column(words.text("column.frame"), [words.of("frame", row.frame) for row in shown]),
         text_column(words.text("column.scope"), [words.scope(row.scope) for row in shown]),
         text_column(words.text("column.is_corrected"), [words.yes(row.correct) for row in shown]),
@@ -83,10 +83,11 @@ def table_by_strip(words: Words, results: Results) -> Table:
         decided = [first(results.selection, angle=angle, scope=scope) for scope in kept]
         lines = [_line_of(results, row) if row else None for row in decided]
         forms = [words.of("form", row.form) if row else None for row in decided]
+        head = words.angle(angle)
         columns += [
-            share_column("R²", [line.r_squared if line else None for line in lines], angle),
-            p_column("p", [_tested_p(*pair) for pair in zip(decided, lines, strict=True)], angle),
-            text_column(words.text("column.form_in_group"), forms, angle),
+            share_column("R²", [line.r_squared if line else None for line in lines], head),
+            p_column("p", [_tested_p(*pair) for pair in zip(decided, lines, strict=True)], head),
+            text_column(words.text("column.form_in_group"), forms, head),
         ]
     note = words.text("decisions.no_line", sign=fmt.MISSING)
     caption = words.text("decisions.caption_by_strip")

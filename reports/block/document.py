@@ -1,6 +1,6 @@
 """The document of a block's report: its front and its topics in order."""
 
-from posstats.contract.choices import Language
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.contract.results import Results
 
 from ..document.content import known
@@ -39,7 +39,7 @@ TOPICS: tuple[Topic, ...] = (
 )
 
 
-def build(results: Results, language: Language = "en") -> ReportDocument:
+def build(results: Results, language: Language = DEFAULT_LANGUAGE) -> ReportDocument:
     """Make the document of a block's report.
 
     Parameters

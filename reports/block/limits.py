@@ -36,7 +36,9 @@ def _less_known_than_stated(words: Words, results: Results) -> str:
     """Angles that the tie points give less well than the POS claims to know them."""
     stated = results.settings.angle_rad
     loose = [
-        words.text("limits.only_to", angle=row.angle, sigma=fmt.angle(row.median_sigma_rad))
+        words.text(
+            "limits.only_to", angle=words.angle(row.angle), sigma=fmt.angle(row.median_sigma_rad)
+        )
         for row in rows(results.angle_error_summary, frame="ground")
         if stated and row.median_sigma_rad and row.median_sigma_rad > stated
     ]

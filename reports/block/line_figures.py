@@ -152,7 +152,7 @@ def draw_errors(
     data: Sequence[ImageAngleErrors],
     angle: str,
     lines: Lines,
-    strip_words: str = "strip {strip}",
+    strip_words: str,
 ) -> None:
     """Errors of an angle with the fitted lines; `strip_words` has ``{strip}`` for a strip."""
     for strip, part, look in by_strip(data):

@@ -129,7 +129,7 @@ def _who(words: Words, kept: Sequence[Regression]) -> tuple[Column, Column]:
     block = words.text("scope.block")
     scopes = [block if row.scope == "block" else row.scope for row in kept]
     return (
-        text_column(words.text("column.angle"), [row.angle for row in kept]),
+        text_column(words.text("column.angle"), [words.angle(row.angle) for row in kept]),
         text_column(words.text("column.block_or_strip"), scopes),
     )
 
@@ -153,7 +153,7 @@ def _reasons(words: Words, results: Results) -> list[str]:
     for row in results.regression:
         if row.notice:
             why = words.notice(row.notice)
-            named.setdefault((why, words.scope(row.scope)), []).append(row.angle)
+            named.setdefault((why, words.scope(row.scope)), []).append(words.angle(row.angle))
     scopes: dict[tuple[str, str], list[str]] = {}
     for (why, scope), of_angles in named.items():
         scopes.setdefault((why, words.joined(of_angles)), []).append(scope)
@@ -198,17 +198,17 @@ def _figure(words: Words, results: Results, angle: str) -> Drawing | None:
     for row in rows(results.selection, frame=frame, angle=angle, form="constant"):
         _draw_constant(words, panel, results, row)
     panel.keep_large(errors)
-    panel.label(words.text("axis.error_of", angle=angle))
+    panel.label(words.text("axis.error_of", angle=words.angle(angle)))
     _draw_residuals(words, lower, panel, data, angle, lines)
     lower.set_xlabel(words.text("axis.time"))
     picture.align_ylabels([upper, lower])
     legend(picture, upper)
     caption = words.sentences([
-        words.text("over_time.figure", angle=angle, frame=words.of("frame", frame),
+        words.text("over_time.figure", angle=words.angle(angle), frame=words.of("frame", frame),
                    start=fmt.count(start)),
         words.text("over_time.fitted" if lines else "over_time.not_fitted"),
     ])  # fmt: skip
-    title = words.text("over_time.figure_title", angle=angle)
+    title = words.text("over_time.figure_title", angle=words.angle(angle))
     return style.finish(picture, f"regression_{frame}_{angle}", title, caption)
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from posstats.contract.choices import Language
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.contract.results import Results
 
 from ..pages.garbage import garbage_kept
@@ -12,7 +12,7 @@ from .document import build, drawings
 
 
 def write_report(
-    results: Results, folder: Path, *, language: Language = "en", pdf: bool = True
+    results: Results, folder: Path, *, language: Language = DEFAULT_LANGUAGE, pdf: bool = True
 ) -> str:
     """Write ``tables/*.csv``, ``figures/*.svg``, ``report.html`` and ``report.pdf`` into a folder.
 

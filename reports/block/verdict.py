@@ -48,7 +48,7 @@ def _too_coarse(report: BlockReport) -> Iterator[str]:
         return
     yield words.text("coarse.found")
     errors = [
-        words.text("coarse.error", angle=row.angle, size=_degrees(row.rms_rad))
+        words.text("coarse.error", angle=words.angle(row.angle), size=_degrees(row.rms_rad))
         for row in rows(results.angle_error_summary, frame="ground")
         if row.rms_rad is not None
     ]
@@ -86,9 +86,10 @@ def _correction(report: BlockReport) -> str:
             return words.text("correction.none", rules=rules)
         return words.text("correction.none_coarse", rules=rules, only=words.text("coarse.only"))
     what = words.joined(
-        words.text("correction.angle", angle=angle, form=_form(report, angle)) for angle in chosen
+        words.text("correction.angle", angle=words.angle(angle), form=_form(report, angle))
+        for angle in chosen
     )
-    others = [angle for angle in angles(results.settings.frame) if angle not in chosen]
+    others = [words.angle(angle) for angle in angles(results.settings.frame) if angle not in chosen]
     if not others:
         return words.counted("correction.made", len(chosen), rules=rules, what=what)
     return words.counted("correction.made_alone", len(chosen), rules=rules, what=what,
@@ -148,7 +149,7 @@ def _scatter(report: BlockReport) -> str:
     return words.text(
         "left.scatter",
         sizes=words.joined(
-            words.text("left.size_in", size=size, angle=angle)
+            words.text("left.size_in", size=size, angle=words.angle(angle))
             for angle, size in zip(named, shown, strict=True)
         ),
         lines=words.joined(fmt.number(unit.scaled(value), 2) for value in about_line),

@@ -32,9 +32,9 @@ def _named_cause(report: BlockReport, angle: str) -> str:
     held, every = _held(report, angle), _held(report, "angles")
     kind = "most" if share is not None and share < ALONE else "all"
     if held is None or every is None:
-        return words.of("cause", kind, angle=angle)
+        return words.of("cause", kind, angle=words.angle(angle))
     values = {"held": fmt.with_unit(held, "px"), "every": fmt.with_unit(every, "px")}
-    return words.of("cause", f"{kind}_by_holding", angle=angle, **values)
+    return words.of("cause", f"{kind}_by_holding", angle=words.angle(angle), **values)
 
 
 def _held(report: BlockReport, what: str) -> float | None:
@@ -96,7 +96,7 @@ def _surely(words: Words, row: Regression) -> str:
 
 def _shares(report: BlockReport) -> str:
     tested = [
-        f"{row.angle} {fmt.fixed(row.r_squared, 2)}"
+        f"{report.words.angle(row.angle)} {fmt.fixed(row.r_squared, 2)}"
         for row in rows(report.results.regression, frame="ground", scope="block")
         if not fmt.is_missing(row.r_squared)
     ]

@@ -20,8 +20,12 @@ class Words(document.Words):
         """An orientation or correction; `chosen` are the angles that were corrected."""
         if name != "selected":
             return self.of("orientation", name)
-        angles = " + ".join(chosen) or self.text("orientation.no_angle")
+        angles = " + ".join(map(self.angle, chosen)) or self.text("orientation.no_angle")
         return self.text("orientation.selected", angles=angles)
+
+    def angle(self, name: str) -> str:
+        """An angle of either frame."""
+        return self.of("angle", name)
 
     def scope(self, scope: str) -> str:
         """``block``, or the strip in words."""

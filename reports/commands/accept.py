@@ -1,26 +1,24 @@
 """`posstats accept`: from a block or its results to the acceptance document."""
 
 import re
-import textwrap
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from posstats.acceptance.product import Product
 from posstats.acceptance.profile import Contract, Profile
 from posstats.acceptance.profile_files import load_contract
-from posstats.contract.acceptance import Acceptance
 from posstats.contract.choices import JudgedOrientation, Language
 from posstats.contract.files import from_json, to_json
 from posstats.contract.results import Results
 from posstats.errors import PosstatsError
 
 from ..acceptance.data import Demand, assembled, embedded
+from ..acceptance.summary import summary
+from ..acceptance.words import words_of
 from ..acceptance.writing import read_templates, write_document
 from ..block.wording import with_words
 from ..output.progress import Advance, progress_bar
 from ..output.staged_folder import staged_folder
-from ..output.terminal import WIDTH
 from ..output.timestamp import now
 
 BLOCK_TOML = "block.toml"
@@ -81,8 +79,9 @@ def judge(source: Path, out: Path, wish: Wish, *, pdf: bool = True) -> tuple[str
         bar("writing the document", 0.75)
         missing = write_document(acceptance, found, templates, files, stage, pdf=pdf)
     written = ["acceptance.html"] + (["acceptance.pdf"] if pdf and not missing else [])
-    lines = [*_summary(acceptance), "", *([missing] if missing else [])]
-    lines.append(f"document: {', '.join(str(out / name) for name in written)}")
+    lines = [*summary(acceptance), "", *([missing] if missing else [])]
+    paths = ", ".join(str(out / name) for name in written)
+    lines.append(words_of(acceptance).text("terminal.document", files=paths))
     return acceptance.verdict, lines
 
 
@@ -133,21 +132,3 @@ def _results_text(path: Path) -> bytes:
     if path.stat().st_size > _LARGEST_RESULTS:
         raise PosstatsError(f"{path}: more than {_LARGEST_RESULTS // 1_000_000} MB are not read")
     return path.read_bytes()
-
-
-def _summary(acceptance: Acceptance) -> Iterator[str]:
-    """Verdict, requirements and statement, as lines of text."""
-    simulated = " (simulated)" if acceptance.block.simulated else ""
-    yield f"{acceptance.verdict.upper()}: {acceptance.block.name}{simulated}"
-    profile = acceptance.profile
-    yield (
-        f"against {profile.name} ({profile.edition}), orientation "
-        f"{acceptance.orientation}, document {acceptance.document_id}"
-    )
-    yield ""
-    for row in acceptance.requirements:
-        line = f"{row.verdict:12}  {row.id}: {row.reason}"
-        yield from textwrap.wrap(line, WIDTH, subsequent_indent=" " * 14)
-    if acceptance.statement:
-        yield ""
-        yield from textwrap.wrap(acceptance.statement, WIDTH)

@@ -9,7 +9,15 @@ import click
 from posstats.contract.choices import JudgedOrientation, Language, TerrainKind
 from posstats.errors import PosstatsError
 
-from .command_line import FOLDER, choice, clear_errors, default_out, no_pdf_option, out_option
+from .command_line import (
+    FOLDER,
+    choice,
+    clear_errors,
+    default_out,
+    language_option,
+    no_pdf_option,
+    out_option,
+)
 
 
 class _Length(click.ParamType[float]):
@@ -32,13 +40,7 @@ class _Length(click.ParamType[float]):
 
 LENGTH = _Length()
 
-language_option = click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of what is written or said.",
-)
+_WRITTEN_OR_SAID = "Of what is written or said."
 
 
 @click.command()
@@ -68,7 +70,7 @@ language_option = click.option(
     help=f"Orientation to judge.  [default: the first of {', '.join(get_args(JudgedOrientation))} "
     "that the results hold]",
 )
-@language_option
+@language_option(_WRITTEN_OR_SAID)
 @click.option(
     "--templates",
     type=FOLDER,
@@ -165,7 +167,7 @@ def profiles(name: str | None) -> None:
     help="Its first line opens the key.  [default: ask for the passphrase]",
 )
 @click.option("--out", type=FOLDER, required=True, metavar="SIGNED.pdf", help="File to write.")
-@language_option
+@language_option(_WRITTEN_OR_SAID)
 @clear_errors
 def sign(
     file: Path, p12: Path, passphrase_file: Path | None, out: Path, language: Language
@@ -202,7 +204,7 @@ def sign(
     metavar="DIR",
     help="Templates that you know; pages of others are not believed.",
 )
-@language_option
+@language_option(_WRITTEN_OR_SAID)
 @clear_errors
 def verify(
     file: Path,

@@ -15,7 +15,13 @@ from posstats.adjustment.undetermined import UndeterminedBlockError
 from posstats.adjustment.writing import write_adjustment
 from posstats.block.model import Block
 from posstats.contract.adjustment import AdjustmentResults
-from posstats.contract.choices import ControlChoice, ControlSubset, NamedControl
+from posstats.contract.choices import (
+    DEFAULT_LANGUAGE,
+    ControlChoice,
+    ControlSubset,
+    Language,
+    NamedControl,
+)
 from posstats.contract.files import to_json
 from posstats.errors import PosstatsError
 from posstats.formats.block_folder import read_block
@@ -52,7 +58,12 @@ def control_choice(text: str | None) -> ControlChoice:
     return read_ids(path)
 
 
-def adjusted(block: Block, settings: AdjustmentSettings, progress: Progress) -> Adjustment:
+def adjusted(
+    block: Block,
+    settings: AdjustmentSettings,
+    progress: Progress,
+    language: Language = DEFAULT_LANGUAGE,
+) -> Adjustment:
     """The adjustment of a block.
 
     Raises
@@ -64,9 +75,9 @@ def adjusted(block: Block, settings: AdjustmentSettings, progress: Progress) -> 
     try:
         return adjust_block(block, settings, progress=progress)
     except UndeterminedBlockError as error:
-        raise PosstatsError(not_determined(error)) from error
+        raise PosstatsError(not_determined(error, language)) from error
     except MistakenDataError as error:
-        raise PosstatsError(mistaken(error)) from error
+        raise PosstatsError(mistaken(error, language)) from error
 
 
 def adjust_folder(
@@ -75,15 +86,20 @@ def adjust_folder(
     settings: AdjustmentSettings,
     calibration: Path | None,
     *,
-    language: str = "en",
+    language: Language = DEFAULT_LANGUAGE,
     pdf: bool,
 ) -> Iterator[str]:
     """Adjust a block folder into `out`; yields the lines of the terminal summary."""
-    with staged_folder(out) as stage, progress_bar("reading the block") as progress:
+    with (
+        staged_folder(out, replaced=("adjustment.pdf",)) as stage,
+        progress_bar("reading the block") as progress,
+    ):
         block = read_block(folder)
         if calibration is not None:
             block = calibrated(block, calibration, unknown=settings.drift != "none")
-        adjustment = adjusted(block, settings, lambda step, done: progress(step, 0.8 * done))
+        adjustment = adjusted(
+            block, settings, lambda step, done: progress(step, 0.8 * done), language
+        )
         taken_off = None if calibration is None else calibration.name
         results = adjustment_results(adjustment, created=now(), calibration=taken_off)
         said = with_words(results)

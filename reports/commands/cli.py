@@ -10,6 +10,7 @@ from typing import get_args
 import click
 
 from posstats.contract.choices import (
+    DEFAULT_CALIBRATION_DRIFT,
     DEFAULT_DRIFT,
     DEFAULT_ERRORS,
     DEFAULT_FRAME,
@@ -37,6 +38,7 @@ from .command_line import (
     choice,
     clear_errors,
     default_out,
+    language_option,
     named,
     no_pdf_option,
     out_option,
@@ -96,13 +98,7 @@ def cli() -> None:
     help="Resist blunders in the tie points, or plain least squares.",
 )
 @calibration_option
-@click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of the report and its figures; results.json stays English.",
-)
+@language_option("Of the report and its figures; the terminal and results.json stay English.")
 @no_pdf_option("report")
 @clear_errors
 def analyse(
@@ -178,12 +174,8 @@ def analyse(
     show_default=True,
     help="Take out contradicting image rays before data snooping.",
 )
-@click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of the report; adjustment.json stays English.",
+@language_option(
+    "Of the report, or of why there is none; the terminal and adjustment.json stay English."
 )
 @no_pdf_option("report")
 @clear_errors
@@ -244,7 +236,7 @@ def adjust(
 @click.option(
     "--drift",
     type=choice(Scope),
-    default="strip",
+    default=DEFAULT_CALIBRATION_DRIFT,
     show_default=True,
     help="Shifts and drifts of the calibration flight itself: of the block or of each strip.",
 )
@@ -280,13 +272,7 @@ def calibrate(
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/paper", show_default=True, help="Output folder.")
 @seed_option
-@click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of the report; comparison.json stays English.",
-)
+@language_option("Of the report; the terminal and comparison.json stay English.")
 @no_pdf_option("report")
 @clear_errors
 def paper(out: Path, seed: int, language: Language, no_pdf: bool) -> None:
@@ -309,13 +295,7 @@ def paper(out: Path, seed: int, language: Language, no_pdf: bool) -> None:
 @cli.command()
 @click.option("--out", type=FOLDER, default="out/wucaps", show_default=True, help="Output folder.")
 @seed_option
-@click.option(
-    "--language",
-    type=choice(Language),
-    default="en",
-    show_default=True,
-    help="Of the report; wucaps.json stays English.",
-)
+@language_option("Of the report; the terminal and wucaps.json stay English.")
 @no_pdf_option("report")
 @clear_errors
 def wucaps(out: Path, seed: int, language: Language, no_pdf: bool) -> None:

@@ -8,7 +8,7 @@ from typing import ParamSpec, TypeVar, get_args
 
 import click
 
-from posstats.contract.choices import PAPER_SEED
+from posstats.contract.choices import DEFAULT_LANGUAGE, PAPER_SEED, Language
 from posstats.errors import PosstatsError
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
@@ -33,7 +33,7 @@ FOLDER = _Folder(path_type=Path)
 
 
 def choice(literal: object) -> click.Choice[str]:
-    """The choices of a Literal type of `posstats.settings`."""
+    """The choices of a Literal type of `posstats.contract.choices`."""
     return click.Choice(get_args(literal))
 
 
@@ -56,6 +56,13 @@ seed_option = click.option(
     show_default=True,
     help="Of the simulation.",
 )
+
+
+def language_option(of: str) -> Callable[[_Command], _Command]:
+    """The option of a command that writes or says something in a language: `of` what it is."""
+    return click.option(
+        "--language", type=choice(Language), default=DEFAULT_LANGUAGE, show_default=True, help=of
+    )
 
 
 def no_pdf_option(document: str) -> Callable[[_Command], _Command]:

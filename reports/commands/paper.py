@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from posstats.contract.choices import Language
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.contract.files import to_json
 from posstats.papers.drift.reproduction import Reproduction, reproduction
 
@@ -20,7 +20,9 @@ from ..papers.drift.words import words_in
 from .command_line import written
 
 
-def reproduce_paper(out: Path, seed: int, *, language: Language = "en", pdf: bool) -> Iterator[str]:
+def reproduce_paper(
+    out: Path, seed: int, *, language: Language = DEFAULT_LANGUAGE, pdf: bool
+) -> Iterator[str]:
     """Write the reproduction into `out`; yields the lines of the terminal summary."""
     created = now()
     english, words = words_in("en"), words_in(language)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from posstats.contract.choices import Language
+from posstats.contract.choices import DEFAULT_LANGUAGE, Language
 from posstats.contract.files import to_json
 from posstats.papers.wucaps.experiment import SituationRun, run_situation
 from posstats.papers.wucaps.reproduction import Reproduction, reproduction
@@ -23,13 +23,16 @@ from .command_line import written
 
 
 def reproduce_wucaps(
-    out: Path, seed: int, *, language: Language = "en", pdf: bool
+    out: Path, seed: int, *, language: Language = DEFAULT_LANGUAGE, pdf: bool
 ) -> Iterator[str]:
     """Write the reproduction into `out`; yields the lines of the terminal summary."""
     created = now()
     english, words = words_in("en"), words_in(language)
     words.families()  # a typeface that is missing is missed before the work
-    with staged_folder(out) as stage, progress_bar("simulating") as progress:
+    with (
+        staged_folder(out, replaced=("wucaps.pdf",)) as stage,
+        progress_bar("simulating") as progress,
+    ):
         run = reproduction(_runs(seed, progress), seed)
         report = _report(english, run)
         progress("writing the report", 0.9)

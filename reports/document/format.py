@@ -119,12 +119,6 @@ def prose(text: str) -> str:
     return re.sub(r"\bR2\b", "R²", signs)
 
 
-def joined(words: Iterable[str], conjunction: str = "and") -> str:
-    """Words as an enumeration: ``a, b and c``."""
-    *head, last = list(words) or [MISSING]
-    return f"{', '.join(head)} {conjunction} {last}" if head else last
-
-
 def shortened(text: str, length: int = 18) -> str:
     """A long id with its middle left out."""
     half = (length - 1) // 2
@@ -148,7 +142,6 @@ MILLIRADIAN = Unit("mrad", 1e3)
 MICRORADIAN = Unit("µrad", 1e6)
 NANORADIAN_PER_SECOND = Unit("nrad/s", 1e9)
 METRE = Unit("m", 1.0)
-MILLIMETRE = Unit("mm", 1e3)
 
 
 def angle_unit(values_rad: Iterable[float | None]) -> Unit:

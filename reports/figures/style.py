@@ -31,7 +31,6 @@ GREY = "#6b7480"
 LIGHT = "#d5dae0"
 
 WIDTH_IN = 6.7  # 170 mm: the text width of A4
-TICK_COUNT = 6
 
 STRIP_COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 STRIP_MARKERS = ("o", "s", "^", "D", "v", "P", "X")

@@ -1,6 +1,7 @@
 """Contract files: what they change, and how files extend files."""
 
 import re
+from dataclasses import fields
 
 import pytest
 from finding_parts import assert_finding
@@ -8,6 +9,7 @@ from profile_texts import DOCS, OWN, documented_contract, findings_of, write
 
 from posstats.acceptance import profile_reading as reading
 from posstats.acceptance.product import Product
+from posstats.acceptance.profile import Parties
 from posstats.acceptance.profile_files import (
     ProfileFormatError,
     load_contract,
@@ -50,10 +52,11 @@ def test_the_contract_of_the_documentation_changes_what_it_says(example):
 def test_the_documentation_lists_every_key_and_quantity():
     page = (DOCS / "acceptance.md").read_text(encoding="utf-8")
     named = set(re.findall(r"`([\w-]+)`", page))
-    keys = {*reading.TOP_KEYS, *reading.REQUIREMENT_KEYS, *reading.STATEMENT_KEYS}
+    read = (reading.ProfileTable, reading.RequirementTable, reading.StatementTable)
+    keys = {each.name for table in read for each in fields(table)}
     tables = {"contract", "product", "requirement", "statement"}
     assert keys - tables - named == set()
-    assert {*reading.CONTRACT_KEYS, *reading.PRODUCT_KEYS} - named == set()
+    assert {each.name for table in (Parties, Product) for each in fields(table)} - named == set()
     assert set(QUANTITIES) - named == set()
     assert set(profile_names()) - named == set()
     for name, quantity in QUANTITIES.items():

@@ -181,11 +181,14 @@ def test_every_part_of_the_report_is_there_and_text_is_text(results, language):
     assert "nan" not in re.sub(r"<[^>]*>", "", page).lower().split()
 
 
-def test_a_report_in_chinese_leaves_the_data_in_english(adjusted, folder, tmp_path):
+def test_a_report_in_chinese_leaves_the_data_in_english_and_no_old_pdf(adjusted, folder, tmp_path):
     out = tmp_path / "out"
+    out.mkdir()
+    (out / "adjustment.pdf").write_text("of an earlier run", encoding="utf-8")
     result = run("adjust", folder, "--control", "corners", "--out", out, "--language", "zh",
                  "--no-pdf")  # fmt: skip
     assert result.exit_code == 0, result.output
+    assert not (out / "adjustment.pdf").exists()
     page = (out / "adjustment.html").read_text(encoding="utf-8")
     assert '<html lang="zh-CN">' in page
     assert words_in("zh").text("bundle_document.title") in page
@@ -196,15 +199,17 @@ def test_a_report_in_chinese_leaves_the_data_in_english(adjusted, folder, tmp_pa
     assert {**chinese, "created": None} == {**english, "created": None}
 
 
-def test_a_block_that_is_not_determined_is_explained_in_words(tmp_path):
+@pytest.mark.parametrize("language", ["en", "zh"])
+def test_a_block_that_is_not_determined_is_explained_in_words(tmp_path, language):
     block = small_block(flight={"n_strips": 1, "images_per_strip": 4}, check_points={"n": 0})
     pos = block.orientations
     nothing = np.full_like(pos.position_m, 1e6)
     loose = replace(pos, sigma_position_m=1e3 * nothing, sigma_angles_rad=nothing)
     write_block(replace(block, orientations=loose, adjusted=None), tmp_path / "block")
-    result = run("adjust", tmp_path / "block", "--drift", "none", "--out", tmp_path / "out")
+    result = run("adjust", tmp_path / "block", "--drift", "none", "--out", tmp_path / "out",
+                 "--language", language)  # fmt: skip
     assert result.exit_code == 1
-    words = words_in("en")
+    words = words_in(language)
     said = " ".join(result.output.split())
     assert words.text("defect.all_images") in said
     assert words.text("notice.helps_datum") in said

@@ -3,6 +3,7 @@
 import pytest
 from click.testing import CliRunner
 
+from posstats.errors import PosstatsError
 from posstats.reports.commands import paper as paper_command
 from posstats.reports.commands import wucaps as wucaps_command
 from posstats.reports.commands.cli import cli
@@ -28,6 +29,23 @@ def test_the_commands_hand_on_seed_language_and_pdf(
     run = CliRunner().invoke(cli, [name, "--out", str(tmp_path), *options])
     assert run.output == "written\n"
     assert called == {"out": tmp_path, "seed": seed, "language": language, "pdf": pdf}
+
+
+@pytest.mark.parametrize("command", [paper_command, wucaps_command])
+def test_a_run_without_pdf_leaves_no_old_pdf(monkeypatch, tmp_path, command):
+    """Of the folder only: what would be written into it stays away."""
+    name = command.__name__.rpartition(".")[2]
+    (tmp_path / f"{name}.pdf").write_text("of an earlier run", encoding="utf-8")
+
+    def staged(out, replaced=()):
+        for each in replaced:
+            (out / each).unlink()
+        raise PosstatsError("far enough")
+
+    monkeypatch.setattr(command, "staged_folder", staged)
+    with pytest.raises(PosstatsError):
+        list(getattr(command, f"reproduce_{name}")(tmp_path, 1, pdf=False))
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """The documentation is true: its example is a block, its links lead somewhere."""
 
+import pkgutil
 import re
 import runpy
 
@@ -71,6 +72,31 @@ def test_links_lead_to_pages_and_headings_that_exist(page):
 def test_tables_of_keys_are_made_of_the_contract(page):
     text = page.read_text(encoding="utf-8")
     assert KEYS["written"](text) == text
+
+
+def test_the_code_that_the_method_names_exists():
+    rows = re.findall(
+        r"^\| \[\d\]\(.*\| ([^|]+) \|$", (DOCS / "method.md").read_text("utf-8"), re.M
+    )
+    named = [name for row in rows for name in re.findall(r"`([\w/]+)`", row)]
+    assert len(named) > 20
+    assert [name for name in named if not (ROOT / "posstats" / f"{name}.py").is_file()] == []
+
+
+def _exists(name: str) -> bool:
+    """Whether a dotted name is a module, or something in one."""
+    try:
+        return pkgutil.resolve_name(name) is not None
+    except (ImportError, AttributeError):
+        return False
+
+
+def test_dotted_names_in_texts_of_the_code_exist():
+    folders = (ROOT / name for name in ("posstats", "reports", "benchmarks"))
+    paths = [path for folder in folders for path in folder.rglob("*.py")]
+    found = {n for p in paths for n in re.findall(r"`(posstats(?:\.\w+)+)`", p.read_text("utf-8"))}
+    assert len(found) > 5
+    assert sorted(name for name in found if not _exists(name)) == []
 
 
 def test_every_field_of_the_contract_says_what_it_holds():

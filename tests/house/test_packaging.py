@@ -14,6 +14,7 @@ from small_scenario import small_block
 from posstats.formats.block_folder import write_block
 
 SHIPPED = ("posstats", "reports", "templates", "pyproject.toml", "README.md", "LICENSE")
+SUFFIXES = {".py", ".toml", ".csv", ".j2", ".css", ".po", ".typed"}
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +50,7 @@ def test_the_wheel_holds_every_file_of_the_package(wheel):
     }
     for folder, place in places.items():
         for path in (ROOT / folder).rglob("*"):
-            if path.is_file() and path.suffix in {".py", ".toml", ".j2", ".css", ".po", ".typed"}:
+            if path.is_file() and path.suffix in SUFFIXES:
                 assert f"{place}/{path.relative_to(ROOT / folder)}" in shipped
 
 

@@ -73,7 +73,8 @@ def _remembered(page: str, files: tuple[Attachment, ...], created: str, identifi
 
 def remembering(page, files, created, identifier) -> bytes:
     """`render_archive`, which gives the same bytes for the same arguments, called once for them."""
-    return _remembered(page, tuple(files), created, identifier)
+    in_order = sorted(files, key=lambda file: file.name)  # any order gives the same bytes
+    return _remembered(page, tuple(in_order), created, identifier)
 
 
 def render_document(acceptance, results, templates) -> str:

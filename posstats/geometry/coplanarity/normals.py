@@ -8,7 +8,7 @@ Each point's weight matrix is therefore
 
 where w is the robust weight of each pair (w = 0 takes the pair out exactly). D D' is singular at
 the solution, so a small independent noise (RIDGE) keeps W regular; the covariance of the
-unknowns is right for this W all the same (`least_squares.Propagation`).
+unknowns is right for this W all the same (`numerics.solvers.dense.Propagation`).
 
 By Woodbury's identity nothing of the size of the number of pairs is inverted: with
 E = D'L^-1 D, H = D'L^-1 J and g = D'L^-1 q (2n rows each) and the Cholesky factor C C' = I + E,
@@ -55,7 +55,7 @@ class Observed(NamedTuple):
 
 
 class PointRays(NamedTuple):
-    """The pairs and the rays of g points, as in `coplanarity_pairs.PointPairs`."""
+    """The pairs and the rays of g points, as in `point_pairs.PointPairs`."""
 
     left_ray: Ints
     right_ray: Ints
@@ -283,7 +283,7 @@ def accumulate_normals(
     points
         The points to add; those of the same images are best neighbours.
     common
-        (n, n) numbers of the pairs of images, as in `coplanarity_pairs.PointPairs`.
+        (n, n) numbers of the pairs of images, as in `point_pairs.PointPairs`.
     normals, right_side
         (c, 6, 6), (6 n,): J'WJ, as for `matrix_of_parts`, and J'Wq are added; per image three
         angles, then three coordinates.

@@ -46,7 +46,7 @@ def weigh_pairs(
 ) -> None:
     """Write robust weights (0: rejected), and the state that they belong to.
 
-    The parameters are those of `posstats.pair_adjustment.adjust_pairs`.
+    The parameters are those of `posstats.geometry.stereo.pair_adjustment.adjust_pairs`.
     """
     for p in pairs:
         points = slice(offsets[p], offsets[p + 1])

@@ -6,8 +6,9 @@ With u = R^T (X - S), a = -ux / uz and b = -uy / uz the ideal image point is c (
     y = c (b g - p1 (a^2 + 3 b^2) + 2 p2 a b) + eta (s1 (rho^2 - r0^2) + s3) + s2 xi + y0,
 
 g = 1 + k1 r^2 + k2 r^4 + k3 r^6, r^2 = a^2 + b^2, (xi, eta) = c (a, b), rho its length in mm:
-Brown's model as in `camera.Distortion` (y up here) and Bauer's, equation 6 of the second source
-paper, both added to the ideal point of equation 1. c = principal distance + camera_c.
+Brown's model as in `posstats.block.camera.Distortion` (y up here) and Bauer's, equation 6 of the
+second source paper, both added to the ideal point of equation 1. c = principal distance +
+camera_c.
 
 A rotation vector w turns an image in the ground frame, R <- exp([w]x) R; per image three of its
 components come first, then three of the projection centre.

@@ -43,7 +43,6 @@ the calibrated POS; with boresight and strip-wise shifts and drifts as weighted 
 both; with these free. The bundle of the flight without systematic errors."""
 
 METHODS: tuple[Method, ...] = get_args(Method)
-DIRECT: tuple[Method, ...] = METHODS[:4]
 _BUNDLES: dict[Method, tuple[Unknowns, bool]] = {
     "bundle": ("none", False),
     "bundle_calibrated": ("none", True),

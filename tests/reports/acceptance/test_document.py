@@ -94,12 +94,11 @@ def test_the_first_page_names_standard_class_orientation_and_statement(pages):
         assert words in first
 
 
-def test_a_real_block_carries_no_mark_and_a_simulated_one_does():
+def test_a_real_block_carries_no_mark_and_a_simulated_one_does(pages):
     real = values.acceptance(40, simulated=False)
     page = render_document(real, values.results(simulated=False), {})
     assert "Simulated" not in words_on(page).replace("area 1, simulated", "")
-    made_up = render_document(values.acceptance(40), RESULTS, {})
-    assert said("limits.simulated") in single_spaced(words_on(made_up))
+    assert said("limits.simulated") in single_spaced(words_on(pages["accepted"]))
 
 
 def test_ids_and_names_are_text_wherever_they_appear(pages):

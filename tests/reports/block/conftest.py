@@ -18,8 +18,18 @@ def coarse():
 
 
 @pytest.fixture(scope="session")
-def page(area) -> str:
-    return html.render(build(area))
+def area_document(area):
+    return build(area)
+
+
+@pytest.fixture(scope="session")
+def chinese_document(area):
+    return build(area, "zh")
+
+
+@pytest.fixture(scope="session")
+def page(area_document) -> str:
+    return html.render(area_document)
 
 
 @pytest.fixture(scope="session")

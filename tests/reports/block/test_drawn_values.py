@@ -18,8 +18,8 @@ ANGLES = ("omega", "phi", "kappa")
 
 
 @pytest.fixture(scope="module")
-def drawn(area):
-    return svgs_of(build(area))
+def drawn(area_document):
+    return svgs_of(area_document)
 
 
 def paths(svg, *looks):

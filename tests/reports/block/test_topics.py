@@ -42,8 +42,8 @@ def test_decisions_by_strip_are_one_matrix_and_reasons_only_of_corrections(area)
     assert reasons.columns[-1].cells == (WORDS.reason(corrected.notices),)
 
 
-def test_decisions_show_angle_form_and_reason_of_their_own_row(area):
-    table = tables_of(build(area))["decisions"]
+def test_decisions_show_angle_form_and_reason_of_their_own_row(area, area_document):
+    table = tables_of(area_document)["decisions"]
     assert table.columns[0].cells == tuple(row.angle for row in area.selection)
     assert table.columns[3].cells == tuple(WORDS.yes(row.correct) for row in area.selection)
     forms = tuple(WORDS.of("form", row.form) for row in area.selection)
@@ -63,7 +63,7 @@ def test_frames_are_compared_by_their_own_parallax(area):
     assert table.rows == (("ground", "0.420"), ("camera", "0.370"))
 
 
-def test_a_bundle_adjustment_is_a_topic_of_its_own(area):
+def test_a_bundle_adjustment_is_a_topic_of_its_own(area, area_document):
     bundle = Bundle(
         sigma0=1.31, dof=201.0, p_value=0.0123, image_rms_px=0.21, sigma_image_px=0.34,
         n_rays=1500, n_rejected_rays=7, n_control_points=4,
@@ -73,10 +73,10 @@ def test_a_bundle_adjustment_is_a_topic_of_its_own(area):
     assert shown == ("1.31", "201", "0.012", "0.210\u00a0px", "0.340\u00a0px", "1500", "7", "4")
     control = WORDS.counted("bundle.control", 4)
     assert any(text.endswith(control) for text in paragraphs_of(document))
-    assert "bundle" not in tables_of(build(area))
+    assert "bundle" not in tables_of(area_document)
 
 
-def test_angles_known_less_well_than_the_pos_claims_are_named(area):
+def test_angles_known_less_well_than_the_pos_claims_are_named(area, area_document):
     stated = fmt.angle(area.settings.angle_rad)
     found = WORDS.text("limits.only_to", angle="omega", sigma=fmt.angle(3e-4))
     said = WORDS.text("limits.blind", found=found, stated=stated)
@@ -85,11 +85,11 @@ def test_angles_known_less_well_than_the_pos_claims_are_named(area):
         area, "angle_error_summary", lambda row: replace(row, median_sigma_rad=sigma[row.angle])
     )
     assert any(text.endswith(said) for text in paragraphs_of(build(loose)))
-    assert not any(found in text for text in paragraphs_of(build(area)))
+    assert not any(found in text for text in paragraphs_of(area_document))
 
 
-def test_warnings_are_the_notices_in_the_words_of_the_language(area):
-    section = next(part for part in build(area).sections if part.id == "limits")
+def test_warnings_are_the_notices_in_the_words_of_the_language(area, area_document):
+    section = next(part for part in area_document.sections if part.id == "limits")
     (bullets,) = [item for item in section.items if isinstance(item, Bullets)]
     assert bullets.texts == tuple(WORDS.notice(each) for each in area.notices)
 
@@ -99,8 +99,8 @@ def test_without_notices_no_warning_is_made_up(area):
     assert WORDS.text("limits.no_warnings") in paragraphs_of(document)
 
 
-def test_scopes_that_leave_nothing_open_have_no_row(area):
-    table = tables_of(build(area))["observability"]
+def test_scopes_that_leave_nothing_open_have_no_row(area_document):
+    table = tables_of(area_document)["observability"]
     assert table.columns[0].cells == tuple(WORDS.scope(str(k)) for k in range(1, 6))
     assert set(table.columns[1].cells) == {WORDS.rotations(["about_base_axis"])}
 
@@ -124,8 +124,8 @@ def test_regressions_that_could_not_be_made_are_told_with_their_reason(coarse):
     assert said in notes
 
 
-def test_settings_and_files_are_those_of_the_results(area):
-    tables = tables_of(build(area))
+def test_settings_and_files_are_those_of_the_results(area, area_document):
+    tables = tables_of(area_document)
     assert tables["inputs"].rows == tuple((f.file, f.sha256) for f in area.block.inputs)
     assert tables["versions"].rows == tuple(area.versions.items())
     assert [row[1] for row in tables["settings"].rows] == [

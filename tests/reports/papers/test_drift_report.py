@@ -30,9 +30,6 @@ from posstats.synthetic import simulate
 COMMAND = Path(sys.executable).with_name("posstats")
 EPOCH = "1750000000"
 
-# One worker runs the experiment for all tests of this file.
-pytestmark = pytest.mark.xdist_group("paper")
-
 
 def run_paper(out: Path, *options: str) -> str:
     environment = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}

@@ -16,9 +16,6 @@ from posstats.reports.commands.cli import cli
 from posstats.reports.commands.wucaps import SituationRun, run_situation
 from posstats.reports.papers.wucaps.words import words_in
 
-# One worker runs the experiment for all tests of this file.
-pytestmark = pytest.mark.xdist_group("wucaps")
-
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, SituationRun]:
