@@ -6,7 +6,7 @@ from posstats.papers.drift.reproduction import Reproduction
 
 from ...block.bar_figures import corrections
 from ...document import format as fmt
-from ...document.content import Labelled, Paragraph, Part
+from ...document.content import Labelled, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
 from .bars import drawn, percent, titles
@@ -24,15 +24,8 @@ _SHOWN = {
 
 def topic(words: Words, report: Report) -> Part:
     """Figure 3 and the numbers behind it."""
-    return Part(
-        "corrected",
-        words.text("corrected.title"),
-        (
-            Paragraph(words.text("corrected.text")),
-            *report.lettered(3),
-            Labelled("E", table(words, report.run)),
-        ),
-    )
+    said = words.text("corrected.title"), words.text("corrected.text")
+    return report.bars_topic("corrected", 3, said, Labelled("E", table(words, report.run)))
 
 
 def table(words: Words, run: Reproduction) -> Table:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from posstats.papers.drift.reproduction import Reproduction
 
-from ...document.content import Labelled
+from ...document.content import Labelled, Paragraph, Part
 from ...document.drawing import Drawing
 from ..conclusion import Conclusion
 
@@ -17,6 +17,11 @@ class Report:
     run: Reproduction
     conclusions: Sequence[Conclusion]
     figures: Mapping[int, Sequence[Drawing]]
+
+    def bars_topic(self, name: str, number: int, said: tuple[str, str], numbers: Labelled) -> Part:
+        """The topic of a figure with bars: title and text, the figure by area, its numbers."""
+        title, text = said
+        return Part(name, title, (Paragraph(text), *self.lettered(number), numbers))
 
     def lettered(self, number: int) -> list[Labelled]:
         """A figure of the paper for every area: 1a, 1b, 1c."""

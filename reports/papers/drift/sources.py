@@ -7,7 +7,7 @@ from posstats.papers.drift.reproduction import Reproduction
 from ...block.bar_figures import held_angles
 from ...block.view import HELD
 from ...document import format as fmt
-from ...document.content import Labelled, Paragraph, Part
+from ...document.content import Labelled, Part
 from ...document.drawing import Drawing
 from ...document.table import Column, Table, text_column
 from .bars import drawn, percent, titles
@@ -18,15 +18,8 @@ from .words import Words
 
 def topic(words: Words, report: Report) -> Part:
     """Figure 1 and the numbers behind it."""
-    return Part(
-        "sources",
-        words.text("sources.title"),
-        (
-            Paragraph(words.text("sources.text")),
-            *report.lettered(1),
-            Labelled("D", table(words, report.run)),
-        ),
-    )
+    said = words.text("sources.title"), words.text("sources.text")
+    return report.bars_topic("sources", 1, said, Labelled("D", table(words, report.run)))
 
 
 def table(words: Words, run: Reproduction) -> Table:

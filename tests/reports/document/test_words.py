@@ -92,3 +92,13 @@ def test_a_reason_joins_its_notices():
 def test_a_notice_without_words_is_an_error():
     with pytest.raises(MissingMessageError):
         ENGLISH.notice(Notice(code="perhaps"))
+
+
+def test_of_many_names_the_first_are_shown_and_the_others_counted():
+    words = ENGLISH
+    more = words.text("list.more", n="2")
+    assert words.first("abcd", 2) == words.joined(["a", "b", more])
+    assert words.first("abcd", 2, sentence=True) == words.first("abcd", 2)
+    assert words.first("abc", 3) == words.text("list.between").join("abc")
+    assert words.first("abc", 3, sentence=True) == words.joined("abc")
+    assert not words.first([], 3)
