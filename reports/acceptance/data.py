@@ -161,18 +161,21 @@ def _assembled(
         requirements=tuple(
             replace(row, reason=acceptance_words.reason(words, row)) for row in values.requirements
         ),
-        statement=statement(words, assessment),
+        statement=statement(assessment),
         attachments=listed,
     )
     return replace(worded, document_id=document_id(worded))
 
 
-def statement(words: acceptance_words.Words, assessment: Assessment) -> str:
-    """The standard's own wording with its numbers, or empty where it has none to say."""
-    return words.sentences(_filled(words, each) for each in assessment.statements)
+def statement(assessment: Assessment) -> str:
+    """The standard's own wording with its numbers, or empty where it has none to say.
+
+    It is in the language of the standard, whatever that of the document is.
+    """
+    return " ".join(_filled(each) for each in assessment.statements)
 
 
-def _filled(words: acceptance_words.Words, chosen: ChosenStatement) -> str:
+def _filled(chosen: ChosenStatement) -> str:
     class_m, found_m = chosen.class_m, chosen.found_m
     digits = _honest_digits(found_m, class_m)
     text = chosen.template.format(
@@ -182,7 +185,7 @@ def _filled(words: acceptance_words.Words, chosen: ChosenStatement) -> str:
         found_cm="" if found_m is None else fmt.number(100.0 * found_m, digits),
         n_points=fmt.count(chosen.n_points),
     )
-    return text if text.endswith((".", "。")) else text + words.text("sentence.end")
+    return text if text.endswith((".", "。")) else f"{text}."
 
 
 def _honest_digits(found_m: float | None, class_m: float | None) -> int:

@@ -21,14 +21,12 @@ from posstats.formats.block_folder import read_block, write_block
 from posstats.reports.acceptance import writing
 from posstats.reports.acceptance.data import _filled
 from posstats.reports.acceptance.units import Lengths, margin
-from posstats.reports.acceptance.words import DOMAINS, Words
 from posstats.reports.archive.writing import render_archive
 from posstats.reports.block.wording import with_words
 from posstats.reports.commands import accept as accept_command
 from posstats.reports.commands.accept import length_m
 from posstats.reports.commands.cli import cli
 from posstats.reports.document import format as fmt
-from posstats.reports.document.catalogue import catalogue
 from posstats.reports.document.format import METRE, MINUS
 from posstats.reports.verification import pages
 from posstats.settings import Settings
@@ -323,8 +321,7 @@ def test_printed_digits_never_contradict_a_narrow_verdict(share):
         component="horizontal", kind="tested", template="{class_cm} {found_cm}",
         class_m=class_m, found_m=class_m * (1.0 - share), n_points=40,
     )  # fmt: skip
-    words = Words(catalogue("en", *DOMAINS), Lengths(METRE, 3))
-    class_cm, found_cm = map(float, _filled(words, chosen).rstrip(".").split())
+    class_cm, found_cm = map(float, _filled(chosen).rstrip(".").split())
     assert found_cm <= class_cm
     row = JudgedRequirement(
         id="rmse_h", clause="", quantity="rmse_h", source="", mandatory=True, exceeding="fail",
